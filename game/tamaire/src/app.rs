@@ -25,12 +25,12 @@ use switch::Switch;
 
 /// Smallest window in which every screen fits at zoom 1 [points].
 const ROOM: egui::Vec2 = egui::vec2(900.0, 640.0);
-/// [`ROOM`] for a window in portrait orientation [points].
+/// Smallest window in portrait orientation in which every screen fits at zoom 1 [points].
 const TALL_ROOM: egui::Vec2 = egui::vec2(600.0, 760.0);
-/// Number of zoom steps between 0 and 1.
+/// Number of steps into which the zoom factors between 0 and 1 are divided.
 const STEPS: f32 = 32.0;
-/// Longest frame time that counts at a stand [s]. A longer frame, for example after the machine was
-/// suspended, counts as this long.
+/// Maximum time by which a public stand advances in one frame [s]. A longer frame, for example after the
+/// machine was suspended, is shortened to this time.
 const LONGEST: f32 = 1.0;
 
 /// Keys that navigate menus.
@@ -65,7 +65,7 @@ pub struct App {
     had_focus: bool,
     /// Full-screen state that the window was last told to have.
     is_full: bool,
-    /// Full-screen state of the web page when it last changed. Always false on a desktop.
+    /// Last known full-screen state of the web page. Always false on a desktop.
     was_full: bool,
     /// Zoom factor: size of an egui point relative to a point of the system.
     pub zoom: f32,
@@ -82,7 +82,8 @@ impl App {
         let (stage, gpu) = (Stage::new(state), GpuWatch::of(state, "tamaire"));
         #[cfg(target_family = "wasm")]
         crate::film::lend(state);
-        // Browsers allow full screen only in response to a press.
+        // Starts without full screen in a browser, because browsers allow full screen only in response to a
+        // press.
         game.settings.full_screen &= !cfg!(target_family = "wasm");
         let screen_before = game.screen();
         let navigators = Vec::new();
@@ -139,7 +140,8 @@ impl App {
                     continue;
                 }
                 if action == Action::CutForces && is_of_menus {
-                    // These buttons operate menus, which would be impossible if they cut forces.
+                    // These buttons confirm and go back in menus, so they cannot be bound to the action that
+                    // cuts the forces.
                     continue;
                 }
                 self.game.controls.rebinding = None;
@@ -252,14 +254,15 @@ impl App {
                 }
                 Event::PointerMoved(_) | Event::PointerButton { .. } => {
                     note_use_of_keys(ctx, false);
-                    // Each touch event is followed by an emulated mouse event, which does not count.
+                    // A touch also produces emulated mouse events. Only mouse events without a touch mean
+                    // that the player uses the mouse.
                     if !is_touched {
                         game.controls.means = InputMethod::Mouse;
                     }
                 }
                 Event::Touch { .. } => game.controls.means = InputMethod::Fingers,
-                // A window may be played with the mouse without ever getting the focus, so only losing the
-                // focus counts.
+                // Pauses the game only if the window had the focus and lost it. A window that never had the
+                // focus can still be played with the mouse.
                 Event::WindowFocused(focused) => {
                     game.is_away = self.had_focus && !focused;
                     self.had_focus |= focused;
@@ -301,8 +304,8 @@ impl App {
             };
             let is_switch = game.settings.scanning.is_on() && Switch::KEYS.contains(&key);
             if is_switch && game.controls.rebinding.take().is_some() {
-                // The switch cancels the wait for a key: a player with a single switch could otherwise never
-                // leave it.
+                // The switch cancels the wait for the key to bind: a player with a single switch has no other
+                // way to cancel it.
                 taken.push(key);
                 continue;
             }
@@ -326,14 +329,15 @@ impl App {
             if is_playing && game.settings.toggle_keys {
                 game.controls.latch.press(key, &game.settings.bindings);
             }
-            // Browsers handle F11 themselves.
+            // F11 toggles full screen only on a desktop and outside a public stand. Browsers handle F11
+            // themselves.
             let fills = !cfg!(target_family = "wasm") && game.public.is_none();
             if key == Key::F11 && action.is_none() && fills {
                 game.settings.full_screen ^= true;
                 game.keep_settings();
             }
-            // In a menu these keys navigate, regardless of their binding in a round. Cutting forces is the
-            // exception: it works on every screen.
+            // In a menu, a navigation key does not trigger the action to which it is bound in a round.
+            // Cutting the forces is the exception: this action works on every screen.
             let is_of_menu = game.screen() != Screen::Play && OF_MENUS.contains(&key);
             if let Some(action) =
                 action.filter(|action| !is_of_menu || *action == Action::CutForces)
@@ -342,8 +346,8 @@ impl App {
                 taken.push(key);
             }
         }
-        // Removes the handled key presses, so that a menu that has just opened does not take them as a click
-        // or as "back".
+        // Removes the handled key presses from egui's input. Otherwise a menu that has just opened would take
+        // them as a click or as "back".
         let is_taken = |event: &Event| match event {
             Event::Key { key, pressed, .. } => *pressed && taken.contains(key),
             _ => false,
@@ -366,7 +370,7 @@ impl App {
 }
 
 impl eframe::App for App {
-    /// Called by eframe even when nothing is drawn, so that a stand keeps reporting that it is alive.
+    /// Reports that a stand is alive. eframe calls this method even if nothing is drawn.
     fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
         if let Some(attendant) = &mut self.attendant {
             attendant.live(ctx);
@@ -386,7 +390,7 @@ impl eframe::App for App {
             self.game.settings.language,
             self.game.has_strange_names(),
         );
-        // A public stand is seen from a distance, so its text is as large as fits.
+        // A public stand is read from a distance, so its text has the largest size that fits into the window.
         let text_size = match self.game.public {
             Some(_) => f32::INFINITY,
             None => self.game.settings.text_size,
@@ -400,13 +404,14 @@ impl eframe::App for App {
             .pass(&mut self.game, &self.presses, &ctx, seconds);
         self.game.update(seconds);
         if let Some(attendant) = &mut self.attendant {
-            // Uses a frame time with a higher limit, so that the waiting times of a stand stay correct at low
-            // frame rates.
+            // The frame time for the stand is limited to 1 s instead of 0.1 s, so that waiting times of the
+            // stand stay correct at low frame rates.
             let seconds = ctx.input(|input| input.stable_dt).min(LONGEST);
             attendant.pass(&mut self.game, &ctx, seconds);
         }
         if self.screen_before != self.game.screen() {
-            // The focused widget belongs to the previous screen.
+            // Removes the focus after a change of screen, because the focused widget belonged to the previous
+            // screen.
             self.screen_before = self.game.screen();
             self.dwell = Dwell::default();
             ctx.memory_mut(|memory| {
@@ -419,7 +424,7 @@ impl eframe::App for App {
             Some(attendant) => attendant.show(&mut self.game, &mut self.stage, ui),
             None => screens::show(&mut self.game, &mut self.stage, ui),
         }
-        // Some browsers allow copying only in the frame of the press.
+        // Copies in the same frame as the press, because some browsers refuse to copy later.
         if let Some(copied) = self.game.copied.take() {
             self.clipboard.copy(&ctx, copied);
         }
@@ -427,7 +432,8 @@ impl eframe::App for App {
             self.game.tell_of_copy(took);
         }
         self.press_by_resting(&ctx, seconds);
-        // The rows of these screens differ in width, so the arrow keys follow the order of the widgets.
+        // On these screens the rows differ in width. The up and down keys therefore move the focus in the
+        // order of the widgets.
         let is_list = matches!(
             self.game.screen(),
             Screen::Settings | Screen::Forces | Screen::Licences | Screen::Replays
@@ -442,8 +448,8 @@ impl eframe::App for App {
         Some(self)
     }
 
-    /// Closes the stand and the files here, because on some systems the program ends with its last window
-    /// without running destructors.
+    /// Closes the stand and the files before the window closes. On some systems the program ends with its
+    /// last window without running destructors.
     fn on_exit(&mut self) {
         if let Some(attendant) = &mut self.attendant {
             attendant.close(&mut self.game);
@@ -455,16 +461,17 @@ impl eframe::App for App {
 /// Sets the zoom of the interface: `text_size`, or less if the window is too small.
 fn fit(ctx: &egui::Context, text_size: f32) {
     let zoom = zoom(ctx.content_rect().size() * ctx.zoom_factor(), text_size);
-    // No zoom while a mouse button is down, so that a dragged widget keeps its size.
+    // The zoom does not change while a mouse button is down, so that a dragged widget keeps its size.
     if !ctx.input(|input| input.pointer.any_down()) {
         ctx.set_zoom_factor(zoom);
     }
 }
 
 /// Returns `text_size`, or the largest zoom step with which every screen fits into `window`. There are only a
-/// few steps because egui keeps the glyphs of every zoom that it has ever shown.
+/// few steps, because egui keeps the glyphs of every zoom factor that was ever used.
 fn zoom(window: egui::Vec2, text_size: f32) -> f32 {
-    // The tolerance covers the rounding errors of multiplying and dividing by the previous zoom.
+    // The tolerance of 1e-4 covers rounding errors: `window` was divided and multiplied by the previous zoom
+    // factor.
     let is_tall = window.x < window.y;
     let room = if is_tall { TALL_ROOM } else { ROOM };
     let room = (window / room).min_elem() + 1e-4;

@@ -12,7 +12,7 @@ const RECORDED: [&str; 2] = [
     include_str!("../attract/shave.tamaire"),
 ];
 
-/// Returns a session that plays recording `number`; numbers beyond the last start over.
+/// Returns a session that plays the recording with index `number` modulo the number of recordings.
 pub fn attract(number: usize) -> Session {
     let text = RECORDED[number % RECORDED.len()];
     let replay = Replay::read(text).map(Arc::new);

@@ -1,5 +1,5 @@
-//! Entry point in a browser. The page passes a canvas and a host object, and calls [`Running::flush`] when it
-//! is hidden.
+//! Entry point in a browser. The page passes a canvas and a host object, and calls [`Running::flush`] when
+//! the page is hidden.
 
 mod labels;
 
@@ -35,7 +35,7 @@ impl Running {
         let (known, plugin) = (kept.clone(), labels.clone());
         let create = move |context: &eframe::CreationContext<'_>| {
             context.egui_ctx.add_plugin(plugin);
-            // The closure runs once, so the cell is still empty.
+            // The closure runs only once, so the cell is still empty and setting it cannot fail.
             let _ = known.set(context.egui_ctx.clone());
             let game = Game::new(Files::usual(), Sound::open(), Pads::open());
             Ok(Box::new(App::new(context, game)?) as Box<dyn eframe::App>)
@@ -53,8 +53,8 @@ impl Running {
 
     /// Returns the state of the game, for tests and for exhibits in a browser.
     pub fn report(&self) -> Option<Report> {
-        // Turns on the accessibility tree, from which labels are read. It is available from the next frame
-        // on.
+        // Turns on egui's accessibility tree, from which the labels of widgets are read. The labels are
+        // available from the next frame on.
         self.context.enable_accesskit();
         let app = self.runner.app_mut::<App>()?;
         let (game, round, seen) = (&app.game, app.game.bout.round(), self.labels.seen());
@@ -97,7 +97,8 @@ impl Running {
         })
     }
 
-    /// Writes pending data. Called when the page is hidden, because it may be closed without notice.
+    /// Writes pending data. Called when the page is hidden, because a hidden page may be closed without
+    /// notice.
     pub fn flush(&self) {
         if let Some(mut app) = self.runner.app_mut::<App>() {
             app.game.finish_writing();
@@ -134,10 +135,10 @@ pub struct Report {
     pub notices: Vec<String>,
     /// Memory of the game [bytes].
     pub memory: u32,
-    /// Position of the first hand.
+    /// Position of the first hand [px].
     pub hand: Vec<f32>,
-    /// Position of the world origin.
+    /// Position of the world origin on the page [px].
     pub origin: Vec<f32>,
-    /// Position of the point 1 m to the right of the origin.
+    /// Position on the page of the world point 1 m to the right of the origin [px].
     pub right: Vec<f32>,
 }

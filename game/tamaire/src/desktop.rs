@@ -100,8 +100,8 @@ pub fn main() -> ExitCode {
         Some(file) => arguments.options.with_file(file),
         None => arguments.options,
     };
-    // A file opened by a double click shows its errors in the window; a level typed on the command line
-    // reports them on the terminal.
+    // Checks a level given by `--level` and reports its errors on the terminal. Errors of a file opened by a
+    // double click are shown in the window instead.
     if let (None, Some(level)) = (&arguments.file, &options.level)
         && let Err(mistake) = level_at(level)
     {
@@ -164,7 +164,7 @@ fn again(program: &Path) -> Command {
 }
 
 fn print_licences() -> ExitCode {
-    // Writing fails if the reader, for example a pager, was closed early. This is no error.
+    // Ignores a failure to write: the reader, for example a pager, may have been closed early.
     let _read = std::io::stdout().write_all(licences::TEXT.as_bytes());
     ExitCode::SUCCESS
 }

@@ -94,8 +94,8 @@ pub enum FilmError {
 
 impl Film {
     /// Makes the film of a round and returns the bytes of its file. `told` is called with the number of
-    /// finished ticks and the total number. If `studio` is `None`, a studio is opened and stored in it for
-    /// the next film.
+    /// finished ticks and the total number of ticks. If `studio` is `None`, opens an offscreen renderer and
+    /// stores it in `studio` for the next film.
     ///
     /// # Errors
     /// If drawing or encoding fails.

@@ -245,7 +245,7 @@ impl Game {
         }
         let current = self.bout.round().level();
         if current.game().assists == *assists && current.is_version_of(level) {
-            // Building a level takes long, so the current one is reused.
+            // Reuses the level of the current round, because building a level takes long.
             return current.clone();
         }
         match level.assisted(assists) {
@@ -284,7 +284,8 @@ impl Game {
         let (session, is_chosen) = (&self.bout.session, self.bout.is_ghost_chosen);
         if session.is_played() && !is_chosen {
             let level = session.round().level();
-            // The assists may have changed since the round began.
+            // Starts from the level without assists, because the player may have changed the assists since
+            // the round began.
             let level = self
                 .listed(level)
                 .map_or(level, |index| &self.levels[index]);
@@ -396,12 +397,13 @@ impl Game {
             .position(|known| level.is_version_of(known))
     }
 
-    /// Whether there are names given by other people, which may be in any script.
+    /// Whether the game shows names that other people chose, for example in a shared level. Such names may be
+    /// in any script.
     pub fn has_strange_names(&self) -> bool {
         self.offered.is_some() || self.is_own(self.levels.len() - 1)
     }
 
-    /// Whether a level of the list is not built in.
+    /// Whether the level with index `index` in [`Self::levels`] is not built in.
     pub fn is_own(&self, index: usize) -> bool {
         index >= NAMED.len() + NAMED_3D.len()
     }

@@ -1,7 +1,7 @@
 //! Entry point of the desktop program. In a browser the page calls [`tamaire::browser`] instead, because
 //! there is no command line.
 
-// Without this, Windows opens a console window beside the game.
+// Keeps Windows from opening a console window beside the game.
 #![cfg_attr(all(windows, not(debug_assertions)), windows_subsystem = "windows")]
 
 #[cfg(not(target_family = "wasm"))]
@@ -13,7 +13,7 @@ fn main() -> std::process::ExitCode {
 
 #[cfg(target_family = "wasm")]
 fn main() {
-    // This reference keeps the functions that the page calls in the program.
+    // This reference keeps the linker from removing the functions that the web page calls.
     let _ = tamaire::browser::Running::start;
 }
 

@@ -63,7 +63,7 @@ impl WishName {
 }
 
 impl Record {
-    /// Merges the better results of another record of the same level.
+    /// Merges the better results of another record of the same level into this record.
     fn take(&mut self, other: Self) {
         for (route, ticks) in other.best {
             lower(&mut self.best, route, ticks);
@@ -75,7 +75,7 @@ impl Record {
     }
 }
 
-/// Lowers the best time of a route to `ticks` if that is shorter; returns whether it was.
+/// Lowers the best time of a route to `ticks` if `ticks` is shorter. Returns whether the time was lowered.
 fn lower(best: &mut BTreeMap<Route, u64>, route: Route, ticks: u64) -> bool {
     let known = best.entry(route).or_insert(u64::MAX);
     let is_better = ticks < *known;
@@ -100,8 +100,8 @@ impl Records {
         self.0.get(level)
     }
 
-    /// Records a win; returns whether it is the fastest by its route. A win with assists is only compared
-    /// with other assisted wins, and it fulfils no wishes.
+    /// Records a win and returns whether it is the fastest win in its level by its route. A win with assists
+    /// is only compared with other assisted wins, and it fulfils no wishes.
     pub fn note(&mut self, level: &Level, outcome: &Outcome) -> bool {
         let record = self.0.entry(level.id.clone()).or_default();
         if !level.game().assists.is_empty() {
@@ -113,7 +113,7 @@ impl Records {
         lower(&mut record.best, outcome.route, outcome.ticks)
     }
 
-    /// Merges the better results of other records.
+    /// Merges the better results of `others` into these records.
     pub fn take(&mut self, others: Self) {
         for (level, record) in others.0 {
             self.0.entry(level).or_default().take(record);
@@ -126,7 +126,8 @@ impl Records {
         let mut named = Self::default();
         for (id, record) in self.0 {
             let name = id.rsplit(['/', '\\']).next();
-            // Only names of level files have an extension; ids of built-in levels have none.
+            // Only a level file has an extension in its name. A key without an extension is the id of a
+            // built-in level and stays unchanged.
             let name = name.filter(|name| name.contains('.')).unwrap_or(&id);
             named.0.entry(name.into()).or_default().take(record);
         }

@@ -103,9 +103,9 @@ impl Session {
         self.pace.forget();
     }
 
-    /// Advances by `seconds` in whole ticks, or by fewer if computing them takes too long, as measured with
-    /// `clock`. If people play the round, `wish` returns the input for each tick. `seen` is called with the
-    /// round after each tick.
+    /// Advances the round by `seconds` [s] in whole ticks, or by fewer ticks if computing them takes too
+    /// long, as measured with `clock`. If people play the round, `wish` returns the input for each tick.
+    /// `seen` is called with the round after each tick.
     pub fn advance(
         &mut self,
         seconds: f32,

@@ -95,7 +95,7 @@ impl Default for Settings {
 
 impl Settings {
     /// Reads settings from TOML. Also returns a description of each entry that could not be used. Turns force
-    /// feedback off if its strength or a calibration is in doubt.
+    /// feedback off if its strength or a calibration could not be read.
     pub fn read(text: &str) -> (Self, Vec<String>) {
         let Sifted {
             value,
@@ -113,7 +113,8 @@ impl Settings {
         let of_motors = |refused: &String| refused.starts_with("calibrations");
         let is_damaged = !refused.is_empty();
         if is_damaged && !table.contains_key("haptics") || refused.iter().any(of_motors) {
-            // The strength that the player had chosen or the calibration of the motors is unknown.
+            // Turns force feedback off: the strength that the player chose or the calibration of the motors
+            // is unknown.
             settings.haptics = 0.0;
         }
         (settings, refused)

@@ -13,8 +13,8 @@ const LETTERS: usize = 80;
 /// TOML.
 const MOST_LINES: usize = 32;
 
-/// Maximum number of refused entries that are isolated one by one. After that, a group of entries is dropped
-/// as a whole if one of them is invalid, which limits the time.
+/// Maximum number of refused entries that are isolated one by one. Beyond this number, a group of entries is
+/// dropped as a whole if one of them is invalid, which limits the time.
 const MOST_REFUSED: usize = 256;
 
 /// Maximum amount of text parsed in the search for unreadable lines [bytes]. Finding one line takes a pass
@@ -31,7 +31,7 @@ pub struct Sifted<T> {
     pub refused: Vec<String>,
 }
 
-/// Reads a value from TOML without the entries that are invalid.
+/// Reads a value from TOML and leaves out invalid entries.
 pub fn sift<T: DeserializeOwned + Serialize + Default>(text: &str) -> Sifted<T> {
     let mut refused = Vec::new();
     let text = good_lines(text, &mut refused);
@@ -61,7 +61,7 @@ pub fn sift<T: DeserializeOwned + Serialize + Default>(text: &str) -> Sifted<T> 
     }
 }
 
-/// Returns the text with empty lines in place of those that are not valid TOML.
+/// Returns the text with each line that is not valid TOML replaced by an empty line.
 fn good_lines(text: &str, refused: &mut Vec<String>) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
     let most = MOST_LINES.min(1 + MOST_READ / text.len().max(1));
@@ -73,8 +73,8 @@ fn good_lines(text: &str, refused: &mut Vec<String>) -> String {
         let start = error.span().map_or(0, |span| span.start);
         let breaks = text.as_bytes()[..start.min(text.len())].iter();
         let line = breaks.filter(|&&byte| byte == b'\n').count();
-        // An error at the end of a line may be reported on a later line, so the last non-empty line up to
-        // there is dropped.
+        // The parser may report an error at the end of a line on a later line. Therefore the last non-empty
+        // line at or before the reported line is dropped.
         let at = (0..=line)
             .rev()
             .find(|&at| lines.get(at).is_some_and(|line| !line.is_empty()));
@@ -84,13 +84,14 @@ fn good_lines(text: &str, refused: &mut Vec<String>) -> String {
         refused.push(format!("line {} ({})", at + 1, brief(error.message())));
         lines[at] = "";
     }
-    // The text is probably not TOML.
+    // So many lines are unreadable that the text is probably not TOML. The search for further lines ends
+    // here.
     refused.push("all after that".into());
     lines.join("\n")
 }
 
-/// Removes the invalid entries of a value, at any depth. `read` tests whether the value can then be read as
-/// part of the whole text.
+/// Removes the invalid entries of a value, at any depth. `read` tests whether the whole text can be read with
+/// a changed value in this place.
 fn good_part(path: &str, value: Value, read: &Read, refused: &mut Vec<String>) -> Value {
     match value {
         Value::Table(entries) => {
@@ -109,7 +110,7 @@ fn good_part(path: &str, value: Value, read: &Read, refused: &mut Vec<String>) -
 /// Tests whether a value can be read; returns the reason if it cannot.
 type Read<'a> = dyn Fn(&Value) -> Result<(), String> + 'a;
 
-/// Entry of a table or an array: key, or number from 1, and value.
+/// Entry of a table (key and value) or of an array (number from 1 and value).
 type Entry = (String, Value);
 
 fn table_of(entries: &[Entry]) -> Value {
@@ -121,7 +122,7 @@ fn array_of(entries: &[Entry]) -> Value {
 }
 
 /// Returns the valid entries of a table or an array; `of` builds a table or an array from entries. Bisection
-/// isolates the invalid ones, so that the time does not grow with the square of their number.
+/// isolates the invalid entries, so that the time does not grow with the square of their number.
 fn good_entries(
     path: &str,
     entries: &[Entry],
@@ -197,7 +198,8 @@ mod tests {
     use super::*;
     use crate::settings::Settings;
 
-    /// Checks the part that is kept of a text, and the start of each refused entry.
+    /// Checks that the entries of `left` are kept of `text`, and that the reports on refused entries begin as
+    /// in `refused`.
     fn check(text: &str, left: &str, refused: &[&str]) {
         let found = sift::<Settings>(text);
         assert_eq!(

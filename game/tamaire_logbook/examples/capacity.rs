@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = folder.path().join("logbook.sqlite");
     let (mut book, _) = Logbook::open(&path, "hall 2")?;
 
-    // One commit per entry, as at a stand.
+    // Writes each entry in a commit of its own, as a stand does.
     let single: Vec<Entry> = (0..40)
         .flat_map(|visit| entries(visit, Moment::now()))
         .collect();
@@ -99,7 +99,7 @@ fn entries(visit: i64, began: Moment) -> Vec<Entry> {
     };
     let round = |number| {
         let won = (number == ROUNDS_A_VISIT).then_some(Route::Squeeze);
-        // A typical length for a round of half a minute.
+        // The replay has a typical length for a round of half a minute.
         let replay = (0..1500).map(|_| fastrand::alphanumeric()).collect();
         Entry::Round(Round {
             id: Id::random(),

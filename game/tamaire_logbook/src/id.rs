@@ -24,8 +24,8 @@ impl Id {
         let mut bytes = [0; 16];
         match getrandom::fill(&mut bytes) {
             Ok(()) => Self(u128::from_be_bytes(bytes)),
-            // If the operating system provides no randomness, fastrand does. It is seeded from the time and
-            // the thread.
+            // Without randomness from the operating system, fastrand is used, which is seeded from the time
+            // and the thread.
             Err(_) => Self(fastrand::u128(..)),
         }
     }

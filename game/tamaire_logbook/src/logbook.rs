@@ -53,8 +53,8 @@ impl Logbook {
     /// one second per gigabyte.
     ///
     /// # Errors
-    /// [`Error::Newer`] if a later version wrote the file, which is left unchanged. [`Error::Locked`],
-    /// [`Error::Full`] and [`Error::Unusable`]; after these the caller may try again.
+    /// [`Error::Newer`] if a later version of the program wrote the file, which is left unchanged. After
+    /// [`Error::Locked`], [`Error::Full`] or [`Error::Unusable`] the caller may try again.
     pub fn open(path: &Path, stand: &str) -> Result<(Self, Option<SetAside>), Error> {
         let opened = file::open(path);
         let (connection, set_aside) = match opened {
@@ -70,7 +70,7 @@ impl Logbook {
         Ok((book, set_aside))
     }
 
-    /// Opens a logbook for reading: a stand's own file while it is written, or a copy of it together with its
+    /// Opens a logbook for reading: the file that a stand is writing, or a copy of it together with its
     /// `-wal` file.
     ///
     /// # Errors
@@ -81,8 +81,8 @@ impl Logbook {
 
     /// Writes an entry. Writing the same entry again has no effect.
     ///
-    /// When this function returns, the entry is on the disk: it survives a killed process and a power cut. If
-    /// the visit of a round, or of a visit's end, is unknown, that visit is created.
+    /// When this function returns, the entry is on the disk: it survives a killed process and a power cut. An
+    /// entry for a round or for the end of a visit creates the visit if the logbook does not contain it.
     ///
     /// # Errors
     /// [`Error`]; then nothing of the entry is written.
@@ -230,7 +230,7 @@ impl Logbook {
         self.map_error(limit())
     }
 
-    /// Returns the time of the oldest row by the clock [ms of UTC]; `None` without rows.
+    /// Returns the earliest time in any row [ms of UTC]; `None` without rows.
     pub(crate) fn oldest(&self) -> Result<Option<i64>, Error> {
         let sql = "SELECT min(began) FROM (SELECT min(began) AS began FROM visits
             UNION ALL SELECT min(began) FROM rounds UNION ALL SELECT min(at) FROM events)";
@@ -269,7 +269,7 @@ impl Logbook {
     }
 }
 
-/// Functions for the sender.
+/// Functions for the thread that sends rows to a server.
 #[cfg(feature = "postgres")]
 impl Logbook {
     /// Opens a logbook that the recorder has opened and checked already.
@@ -291,8 +291,8 @@ impl Logbook {
         self.map_error(sent::unsent(&self.connection))
     }
 
-    /// Returns at most `most` rows that changed after change number `after`, in the order of their changes:
-    /// the change number, the row number and the row.
+    /// Returns at most `most` rows that changed after change number `after`, in the order of their changes.
+    /// Each item holds the change number, the row number and the row.
     pub(crate) fn changes(
         &self,
         after: i64,

@@ -45,7 +45,8 @@ pub struct Round {
     pub end: RoundEnd,
     /// Route by which the round was won; `None` if it was not won.
     pub route: Option<Route>,
-    /// Total mass of the largest piece of each body, as a share of the same total at the start.
+    /// Sum of the masses of each body's largest piece at the end, as a share of this sum at the start, 0 to
+    /// 1.
     pub kept: f32,
     /// Share of the total mass that rests in the basket at the end, 0 to 1.
     pub inside: f32,
@@ -54,8 +55,8 @@ pub struct Round {
     /// Number of pieces outside the basket at the end of a won round, without crumbs
     /// ([`tamaire_play::rules::CRUMB`]). 0 if the round was not won.
     pub lost: u32,
-    /// Route that the game suggested before this round, different from that of the last win. `None` without a
-    /// suggestion.
+    /// Route that the game suggested before this round. It differs from the route of the visitor's last win.
+    /// `None` without a suggestion.
     pub dare: Option<Route>,
     /// Replay as text from [`tamaire_play::Replay::fragment`], a few kilobytes. Empty if there is no replay.
     pub replay: String,
@@ -71,7 +72,7 @@ pub enum RoundEnd {
     Retried,
     /// The player chose another level or left.
     Left,
-    /// The game ended during the round.
+    /// The program ended while the round was still going on.
     Cut,
 }
 
@@ -104,11 +105,11 @@ pub enum Kind {
     Hung,
     /// The GPU or the window was lost.
     LostGraphics,
-    /// The watchdog stopped restarting the program after too many failures.
+    /// The supervisor stopped restarting the program after too many failures.
     GaveUp,
     /// The disk was full.
     FullDisk,
-    /// A damaged file was set aside.
+    /// A damaged logbook file was renamed, and a new logbook was created.
     DamagedFile,
     /// The clock was changed.
     ClockChanged,
@@ -150,7 +151,7 @@ pub enum Entry {
 /// Maximum length of a text in a row, except for replays [bytes]. Longer texts are truncated.
 pub const MAX_TEXT_BYTES: usize = 1 << 14;
 
-/// Names of the kinds, part of the file format. They must not be changed.
+/// Names of the kinds of events in the logbook file. Part of the file format: the names must not be changed.
 const KINDS: [(&str, Kind); 14] = [
     ("began", Kind::Began),
     ("ended", Kind::Ended),
@@ -169,7 +170,7 @@ const KINDS: [(&str, Kind); 14] = [
 ];
 
 impl Kind {
-    /// Returns the name of the kind in the file.
+    /// Returns the name under which the logbook file stores this kind of event.
     pub fn text(&self) -> &str {
         let known = KINDS.iter().find(|(_, kind)| kind == self);
         match (self, known) {
@@ -194,7 +195,7 @@ impl From<Kind> for String {
 }
 
 impl RoundEnd {
-    /// Returns the name of the ending in the file.
+    /// Returns the name under which the logbook file stores this reason.
     pub fn text(self) -> &'static str {
         match self {
             Self::Won => "won",
@@ -210,7 +211,7 @@ impl RoundEnd {
     }
 }
 
-/// Returns the name of a route in the file.
+/// Returns the name under which the logbook file stores a route.
 pub fn route_text(route: Route) -> &'static str {
     match route {
         Route::Squeeze => "squeeze",

@@ -95,7 +95,8 @@ struct Line {
 /// Reason why nothing was sent.
 #[derive(Debug)]
 enum SendError {
-    /// The file cannot be used at present, or does not exist yet. The recorder reports this.
+    /// The file cannot be used at present, or does not exist yet. The recorder reports this problem, so the
+    /// sender does not.
     Book,
     Server(String),
 }
@@ -105,7 +106,7 @@ impl SenderThread {
         let (mut failures, mut unsent) = (0, 0);
         loop {
             let step = self.step();
-            // The file is opened again each time, because the recorder may have set aside a damaged one.
+            // Opens the file again for each batch, because the recorder may have replaced a damaged file.
             unsent = Logbook::attach(&self.path)
                 .and_then(|book| book.unsent())
                 .unwrap_or(unsent);

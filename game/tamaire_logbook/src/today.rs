@@ -15,7 +15,7 @@ pub struct Today {
     pub squeezed: u64,
     /// Rounds won by shaving bits off the body.
     pub shaved: u64,
-    /// Rounds won by a mix of both.
+    /// Rounds won by a mix of squeezing and shaving.
     pub mixed: u64,
     /// Rounds that were restarted before they were won.
     pub retries: u64,

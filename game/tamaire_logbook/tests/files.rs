@@ -24,8 +24,8 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
         .into()
 }
 
-/// Expects that opening sets the file aside and that the new logbook works. Returns the content of the file
-/// set aside.
+/// Checks that opening the file at `path` renames it and creates a new logbook that works. Returns the
+/// content of the renamed file.
 fn expect_set_aside(path: &Path, reason: &str) -> Vec<u8> {
     let (mut book, set_aside) = Logbook::open(path, STAND).unwrap();
     let set_aside = set_aside.expect("the file must be set aside");
@@ -56,7 +56,7 @@ fn open_sets_aside_files_that_are_no_logbooks() {
     fs::remove_file(&path).unwrap();
     execute(&path, "CREATE TABLE recipes (text TEXT)");
     expect_set_aside(&path, "another program");
-    // A logbook by its application id, but with other tables.
+    // The file has the application id of a logbook, but its tables differ.
     execute(
         &path,
         "DROP TABLE replays; ALTER TABLE rounds DROP COLUMN inside",
@@ -112,8 +112,8 @@ fn open_handles_changed_bytes_without_panic() {
     let (mut aside, mut silent) = (0, 0);
     for attempt in 0..300 {
         let mut changed = whole.clone();
-        // Attempts 0 to 99 change one byte of the header each, 100 to 199 one byte of the first 12 pages; the
-        // others change up to 600 bytes anywhere.
+        // Each of the attempts 0 to 99 changes one byte of the header. Each of the attempts 100 to 199
+        // changes one byte of the first 12 pages. Each later attempt changes up to 600 bytes anywhere.
         match attempt {
             0..100 => changed[attempt] ^= 0xff,
             100..200 => {
@@ -181,7 +181,7 @@ fn set_aside_also_renames_the_write_ahead_log() {
     assert_eq!(fs::read(&aside).unwrap(), file[..file.len() / 2]);
     assert_eq!(fs::read(beside(&aside, "-wal")).unwrap(), log);
     drop(book);
-    // If the database file is missing, its log is set aside in the same way.
+    // If the database file is missing, its `-wal` file is renamed in the same way.
     fs::remove_file(&path).unwrap();
     fs::write(beside(&path, "-wal"), &log).unwrap();
     let (book, set_aside) = Logbook::open(&path, STAND).unwrap();
@@ -312,7 +312,7 @@ fn read_accepts_a_copy_taken_during_writing() {
         let copy = Logbook::read(&copy).unwrap();
         assert_eq!(all(&copy).unwrap().rounds.len(), told);
     }
-    // Without its log, a copy contains the rows up to the last checkpoint.
+    // A copy without the `-wal` file contains the rows up to the last checkpoint.
     let copy = folder.path().join("alone");
     fs::copy(&path, &copy).unwrap();
     assert_eq!(

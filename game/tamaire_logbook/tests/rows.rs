@@ -81,7 +81,7 @@ fn write_adapts_values_that_databases_reject() {
     assert_eq!((round.level_hash, round.replay.as_str()), (u64::MAX, ""));
 }
 
-/// Shuffled entries, some of them written several times, give the same rows as each written once.
+/// Writing shuffled entries, some of them several times, gives the same rows as writing each entry once.
 #[test]
 fn writing_an_entry_again_has_no_effect() {
     let mut random = fastrand::Rng::with_seed(7);
@@ -103,8 +103,8 @@ fn writing_an_entry_again_has_no_effect() {
         let kept = all(&once).unwrap();
         assert_eq!(kept, all(&often).unwrap());
         assert_eq!((kept.visits.len(), kept.rounds.len()), (2, 6));
-        // Whichever entry of a visit comes first creates the visit. The entry of its beginning then fills in
-        // the missing values.
+        // The first entry of a visit that is written creates the visit, whatever its kind. The entry for the
+        // beginning of the visit then fills in the missing values.
         let mut found = kept.visits.clone();
         found.sort_by_key(|visit| visit.began);
         assert_eq!(
@@ -205,7 +205,8 @@ fn today_sums_up_a_day() {
     let mut book = open(&path);
     assert_eq!(book.today(MORNING).unwrap(), Today::default());
     book.write_all(&entries(MORNING.after(-DAY))).unwrap();
-    // Times to the first win: 11, 11 + 12, 11 + 12 + 13 s. Later wins and visits without a win do not count.
+    // Times to the first win: 11, 11 + 12, 11 + 12 + 13 s, so the median is 23 s. Later wins and visits
+    // without a win do not count.
     let routes = [Route::Squeeze, Route::Shave, Route::Mix];
     for (place, route) in routes.into_iter().enumerate() {
         let visit = visit(MORNING.after(place as i64 * MINUTE));
@@ -324,7 +325,7 @@ fn readers_and_writers_do_not_block_each_other() {
             .unwrap();
     }
     assert!(reader.join().unwrap() >= 3);
-    // A reader that iterates over rows does not block a writer either.
+    // Writing works while a reader iterates over rows.
     let reader = Logbook::read(&path).unwrap();
     let mut seen = 0;
     reader

@@ -174,8 +174,8 @@ fn visit(random: &mut Rng, played: &[Round], days: i64, entries: &mut Vec<Entry>
     number as usize
 }
 
-/// Returns a copy of one of the rounds played. Its result is plausible for the number of the round within its
-/// visit.
+/// Returns a copy of a round in `played`. The probability that it is won grows with `number`, the number of
+/// the round within its visit.
 fn chosen(random: &mut Rng, played: &[Round], number: u32, dare: Option<Route>) -> Round {
     let wins = random.f32() < [0.35, 0.5, 0.6, 0.65][(number as usize - 1).min(3)];
     let tries_dare = random.f32() < 0.4;

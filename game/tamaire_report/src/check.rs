@@ -27,8 +27,8 @@ pub fn contradiction(round: &Round) -> Option<(Reason, String)> {
     Some((Reason::Contradictory, what.into()))
 }
 
-/// Runs rounds again and stores the results, except for rounds without a replay or with a stored result.
-/// `each` must pass every round to the function that it receives. `done` receives the number of finished
+/// Runs rounds again and stores their results. Skips rounds without a replay and rounds with a stored result.
+/// `each` receives a function, to which it must pass every round. `done` receives the number of finished
 /// rounds.
 ///
 /// # Errors
@@ -52,7 +52,7 @@ pub fn run_all(
             let (jobs, tell) = (jobs.clone(), tell.clone());
             scope.spawn(move || work(&jobs, &tell));
         }
-        // Only the worker threads keep these ends of the channels, so that the channels close when the
+        // Drops the main thread's copies of these channel ends, so that the channels close when the worker
         // threads end.
         drop((jobs, tell));
         let all = each(&mut |round| {
@@ -80,7 +80,8 @@ pub fn run_all(
 
 fn keep(kept: &mut RerunCache, round: &Round, result: Rerun) -> Result<(), Error> {
     match result {
-        // Not stored: another version of the program may support the rules and the level of this replay.
+        // Does not store this result, because another version of the program may support the rules and the
+        // level of the replay.
         Rerun::Foreign(_) => Ok(()),
         result => kept.add(round, result),
     }

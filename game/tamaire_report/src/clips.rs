@@ -5,7 +5,7 @@ use crate::options::Clip;
 use crate::rerun::Rerun;
 use tamaire_play::Replay;
 
-/// Maximum size of a clip; larger ones are left out of the page [bytes].
+/// Maximum size of a clip [bytes]. Larger clips are left out of the page.
 const MOST_BYTES: usize = 6 << 20;
 
 /// Clips of the best rounds.
@@ -18,8 +18,8 @@ pub struct Clips {
 }
 
 impl Clips {
-    /// Makes the clips of the last day, one for each route. `replays` are the replays of [`Figures::best`].
-    /// `done` receives the number of clips made so far.
+    /// Makes a clip of the fastest win by each route on the last day. `replays` are the replays of
+    /// [`Figures::best`]. `done` receives the number of clips made so far.
     pub fn of(
         figures: &Figures,
         replays: &[String],
@@ -40,7 +40,8 @@ impl Clips {
     }
 }
 
-/// Makes a clip of a replay, unless the replay diverges from its hashes when run again.
+/// Makes a clip of a replay. Returns the reason if the replay diverges from its recorded hashes when run
+/// again, or if no clip can be made.
 fn film(fragment: &str, clip: Clip<'_>) -> Result<Vec<u8>, String> {
     if fragment.is_empty() {
         return Err("the round has no replay, or a very long one".into());

@@ -1,5 +1,5 @@
 //! Comparison with the observations of 2004 [Endo 2004, §4.3]: two strategies appeared, visitors needed no
-//! explanation, and those who had won one way tried the other.
+//! explanation, and visitors who had won by one strategy tried the other.
 
 use crate::figures::Figures;
 use crate::spread::interval;

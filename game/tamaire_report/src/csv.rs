@@ -22,7 +22,7 @@ impl CsvRow {
     /// apostrophe is put before it.
     pub fn text(mut self, text: &str) -> Self {
         let formula = ['=', '+', '-', '@', '\t', '\r', '\n'];
-        // Some programs treat full-width signs like ASCII ones.
+        // Full-width signs are guarded, too, because some programs treat them like ASCII signs.
         let wide = ['＝', '＋', '－', '＠'];
         let is_formula = text.starts_with(formula) || text.starts_with(wide);
         let guard = if is_formula { "'" } else { "" };

@@ -5,7 +5,8 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Temporary files of a folder. [`Drafts::keep`] gives them their names; otherwise they are deleted on drop.
+/// Temporary files in a folder. [`Drafts::keep`] renames them to their final names; dropping without it
+/// deletes them.
 #[derive(Debug)]
 pub struct Drafts {
     folder: PathBuf,
@@ -36,12 +37,12 @@ impl Drafts {
             is_new,
             all,
         };
-        // An unwritable folder is reported now, not after an hour of work.
+        // Creates a file now, so that an unwritable folder is reported before the work of an hour.
         draft_in(&drafts.folder)?;
         Ok(drafts)
     }
 
-    /// Starts a file that will have this name in the folder.
+    /// Starts a file that will have the name `name` in the folder.
     ///
     /// # Errors
     /// [`Error::Unwritable`].
@@ -99,7 +100,7 @@ impl Drop for Drafts {
     fn drop(&mut self) {
         self.all.clear();
         if self.is_new {
-            // Fails if the folder is not empty; then it is kept.
+            // Removing fails if the folder is not empty, so that a folder with files is kept.
             let _ = std::fs::remove_dir(&self.folder);
         }
     }

@@ -105,7 +105,7 @@ pub struct Wins {
     pub squeeze: u64,
     /// Rounds won by shaving bits off the body.
     pub shave: u64,
-    /// Rounds won by a mix of both.
+    /// Rounds won by a mix of squeezing and shaving.
     pub mix: u64,
 }
 
@@ -150,7 +150,7 @@ pub struct Heat {
     pub rounds: u64,
     /// Horizontal and vertical axis of the map: x and y in 2D; x and z in 3D, which is seen from above.
     pub axes: [usize; 2],
-    /// Minimum coordinates of the room along these axes [m].
+    /// Minimum coordinates of the room along `axes` [m].
     pub low: [f32; 2],
     /// Width of a cell [m].
     pub cell: f32,
@@ -166,7 +166,7 @@ pub struct Heat {
 pub struct Times {
     /// Number of visits with a win.
     pub visits: u64,
-    /// Quantiles 0.1, 0.25, 0.5, 0.75 and 0.9 [s].
+    /// Quantiles 0.1, 0.25, 0.5, 0.75 and 0.9 of the playing times [s].
     pub quantiles: Option<[f64; 5]>,
     /// Number of visits by time.
     pub bins: Vec<Bin>,
@@ -191,7 +191,8 @@ pub struct Switching {
     pub after: [Wins; 3],
     /// Number of visits whose second win took another route than the first.
     pub switched: u64,
-    /// Number of these visits in which the game made no suggestion between the first and the second win.
+    /// Number of visits whose second win took another route than the first, without a suggestion from the
+    /// game between these wins.
     pub switched_undared: u64,
 }
 
@@ -200,9 +201,9 @@ pub struct Switching {
 pub struct Dares {
     /// Number of rounds before which the game made the suggestion.
     pub rounds: u64,
-    /// Rounds of these that were won by the suggested route.
+    /// Number of rounds with a suggestion that were won by the suggested route.
     pub won_as_dared: u64,
-    /// Rounds of these that were won by another route.
+    /// Number of rounds with a suggestion that were won by another route.
     pub won_otherwise: u64,
     /// Number of visits in which the game made the suggestion.
     pub visits: u64,
@@ -221,7 +222,7 @@ pub struct Pieces {
     pub rounds: Wins,
 }
 
-/// A fastest win.
+/// Fastest win of a day by one route.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Best {
     /// Day of the visit.
@@ -269,7 +270,7 @@ pub struct Refused {
     pub round: Id,
     /// Name of the stand.
     pub stand: String,
-    /// Reason for not counting it.
+    /// Reason why the round was not counted.
     pub reason: Reason,
     /// Details of the reason.
     pub detail: String,
@@ -285,7 +286,7 @@ pub enum Reason {
     Unreadable,
     /// The round's replay diverges from the recorded hashes when run again.
     Astray,
-    /// The round's replay ends with another result than the row has.
+    /// The result of the round's replay differs from the result in the round's row.
     Differs,
 }
 

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use tamaire_logbook::Round;
 use tamaire_play::{Level, Replay};
 
-/// Maps by level, summed over rounds.
+/// Map of the hand positions for each level, summed over the rounds of the level.
 #[derive(Debug, Default)]
 pub struct Heats(HashMap<LevelKey, Sum>);
 
@@ -21,7 +21,7 @@ struct Sum {
 }
 
 impl Heats {
-    /// Adds a round.
+    /// Adds the hand positions of a round to the map of its level.
     pub fn add(&mut self, round: &Round, ran: &RerunResult) {
         let key = (round.level.clone(), round.level_hash);
         let sum = match self.0.get_mut(&key) {

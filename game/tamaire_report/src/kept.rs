@@ -22,7 +22,7 @@ pub struct RerunCache {
     end: u64,
 }
 
-/// Round id and hash of its replay.
+/// Id of a round and hash of the round's replay.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 struct Key {
     round: Id,
@@ -53,8 +53,8 @@ impl Key {
 }
 
 impl RerunCache {
-    /// Opens the file, and creates it if it does not exist. An incomplete line at its end, left by a killed
-    /// program, is removed.
+    /// Opens the file, and creates it if it does not exist. Removes an incomplete last line, which a killed
+    /// program leaves behind.
     ///
     /// # Errors
     /// [`Error::Unwritable`].

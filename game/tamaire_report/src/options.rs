@@ -3,7 +3,8 @@
 use crate::Day;
 use tamaire_play::Replay;
 
-/// Function that makes a small animated GIF of a round. The page shows an error instead of the clip.
+/// Function that makes a small animated GIF of a round. If it fails, the page shows the error instead of the
+/// clip.
 pub type Clip<'a> = &'a dyn Fn(&Replay) -> Result<Vec<u8>, String>;
 
 /// Options of a report.

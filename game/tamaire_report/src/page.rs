@@ -19,7 +19,7 @@ const ROWS: usize = 40;
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 
 /// Returns the page. `strokes` has an entry for each of [`Figures::levels`]: the objects in the room of the
-/// level, or nothing if the level has no map.
+/// level, or an empty list if the level has no map.
 pub fn page(words: &Words, figures: &Figures, strokes: &[Vec<Stroke>], clips: &Clips) -> String {
     let (code, title) = (words.code, escaped(words.title));
     let css = include_str!("page.css");
@@ -144,7 +144,7 @@ fn first_win(words: &Words, figures: &Figures) -> String {
         return String::new();
     };
     let wide = first.to.unwrap_or(1.0);
-    // With many bins, every second one has a label.
+    // If there are more than nine bins, only every second bin has a label.
     let label = |(k, from): (usize, f64)| match k % 2 {
         1 if times.bins.len() > 9 => String::new(),
         _ => format!("{from}"),
@@ -206,7 +206,7 @@ fn dares(words: &Words, figures: &Figures) -> String {
 }
 
 fn per_visit(words: &Words, figures: &Figures) -> String {
-    // The last column is the largest number of rounds of a visit, but at least five.
+    // The columns go up to the largest number of rounds in a visit, but at least to five.
     let last = figures
         .rounds_per_visit
         .iter()

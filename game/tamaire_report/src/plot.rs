@@ -11,7 +11,7 @@ use std::error::Error;
 const WIDTH: u32 = 440;
 /// Height of a column plot [px].
 const HEIGHT: u32 = 270;
-/// Font size in units of plotters; gives 14 px.
+/// Font size in units of the crate plotters; appears as 14 px.
 const LETTERS: f64 = 14.0 * 1.24;
 const INK: RGBColor = RGBColor(0x4A, 0x36, 0x34);
 const LINE: RGBColor = RGBColor(0xE6, 0xD8, 0xC8);
@@ -35,13 +35,13 @@ type Drawn = Result<(), Box<dyn Error>>;
 /// Fill of an area. The fills also differ by pattern, for colour-blind readers.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Fill {
-    /// Plain red: rounds won by squeezing. In plots of visits: visits.
+    /// Plain red: rounds won by squeezing, or visits in a plot of visits.
     Squeeze,
     /// Blue with stripes: rounds won by tearing bits off the body.
     Shave,
-    /// Yellow with dots: a mix of both.
+    /// Yellow with dots: rounds won by a mix of squeezing and shaving.
     Mix,
-    /// Pale with an outline: rounds not won. In the plot by hour: rounds.
+    /// Pale with an outline: rounds not won, or all rounds in the plot by hour.
     Pale,
 }
 
@@ -49,7 +49,8 @@ impl Fill {
     /// All fills in the order of [`crate::figures::Wins::parts`].
     pub const ALL: [Self; 4] = [Self::Squeeze, Self::Shave, Self::Mix, Self::Pale];
 
-    /// Returns the colour used in plotters, and the SVG paint that replaces it in the page.
+    /// Returns the colour that the crate plotters draws, and the SVG paint that replaces this colour in the
+    /// page.
     fn colour(self) -> (RGBColor, &'static str) {
         match self {
             Self::Squeeze => (RGBColor(0xF0, 0x6C, 0x62), "#F06C62"),
@@ -66,7 +67,7 @@ impl Fill {
         [filled].into_iter().chain(edge).collect()
     }
 
-    /// Returns the SVG paint. It requires [`PATTERNS`] in the page.
+    /// Returns the SVG paint, which works only if the page contains [`PATTERNS`].
     pub fn paint(self) -> &'static str {
         self.colour().1
     }
@@ -250,7 +251,7 @@ pub fn map(heat: &Heat, strokes: &[Stroke], axes: [&str; 2]) -> String {
     let height = (inner as f32 * high / wide).clamp(60.0, 900.0);
     let scale = inner as f32 / wide;
     let [low, far] = [heat.low, [heat.low[0] + wide, heat.low[1] + high]];
-    // Seen from above, points nearer to the player are drawn lower.
+    // A map seen from above is flipped, so that points nearer to the player are drawn lower.
     let sign = if heat.axes[1] == 1 { 1.0 } else { -1.0 };
     let flip = |[x, y]: [f32; 2]| (x, sign * y);
     let vertical = if sign > 0.0 {
@@ -345,7 +346,7 @@ fn letters(size: f64) -> TextStyle<'static> {
     ("sans-serif", size).into_font().color(&INK)
 }
 
-/// Draws a text with its top at `at`.
+/// Draws a text with its upper edge at `at`. `side` aligns the text horizontally.
 fn write(area: &Area, text: &str, at: (i32, i32), side: HPos) -> Drawn {
     let style = letters(LETTERS).pos(Pos::new(side, VPos::Top));
     area.draw(&Text::new(text.to_string(), at, style))?;
@@ -364,7 +365,7 @@ fn svg(height: u32, draw: impl FnOnce(&Area) -> Drawn) -> String {
         let told = format!("fill=\"#{red:02X}{green:02X}{blue:02X}\"");
         text = text.replace(&told, &format!("fill=\"{paint}\""));
     }
-    // Without a fixed size the plot takes the available width.
+    // Removes the fixed size from the SVG, so that the plot takes the available width.
     let size = format!("width=\"{WIDTH}\" height=\"{height}\" ");
     text.replacen(&size, "", 1)
 }

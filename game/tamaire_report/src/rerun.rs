@@ -19,9 +19,9 @@ const SAME_TIME: f64 = 0.05;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rerun {
-    /// The replay matched its hashes. Holds the final state.
+    /// The replay reproduced its recorded hashes. Holds the final state.
     Ran(RerunResult),
-    /// The replay diverged from its hashes. Holds the reason.
+    /// The replay diverged from its recorded hashes. Holds the reason.
     Astray(String),
     /// The replay cannot be decoded. Holds the reason.
     Unreadable(String),
@@ -39,7 +39,8 @@ pub struct RerunResult {
     kept: f32,
     inside: f32,
     pieces: usize,
-    /// Whether the replay has the maximum length. The round may have gone on after it.
+    /// Whether the replay has the maximum length, so that the round may have gone on after the end of the
+    /// replay.
     is_cut: bool,
     /// Number of ticks that a hand spent in each cell of the level's [`Grid`].
     pub cells: Vec<(u16, u32)>,

@@ -11,13 +11,13 @@ const CELLS: f32 = 64.0;
 pub struct Grid {
     /// Horizontal and vertical axis of the map: x and y in 2D; x and z in 3D, which is seen from above.
     pub axes: [usize; 2],
-    /// Minimum coordinates along these axes [m].
+    /// Minimum coordinates of the room along `axes` [m].
     pub low: [f32; 2],
-    /// Maximum coordinates along these axes [m].
+    /// Maximum coordinates of the room along `axes` [m].
     pub high: [f32; 2],
     /// Width of a cell [m].
     pub cell: f32,
-    /// Number of cells along the axes.
+    /// Number of cells along each of `axes`.
     pub counts: [usize; 2],
 }
 
@@ -63,7 +63,8 @@ impl Grid {
         }
     }
 
-    /// Returns the index of the cell that contains a position, or of the nearest one.
+    /// Returns the index of the cell that contains a position, or of the nearest cell if the position is
+    /// outside.
     pub fn cell_at(&self, position: Vec3) -> usize {
         let [column, row] = [0, 1].map(|k| {
             let cells = (position[self.axes[k]] - self.low[k]) / self.cell;

@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn interval_is_wide_for_few_visits() {
-        // Ten of twenty, compared with published tables.
+        // Interval for 10 of 20, compared with published tables.
         let [low, high] = interval(10, 20);
         assert!(
             (low - 0.299).abs() < 0.001 && (high - 0.701).abs() < 0.001,

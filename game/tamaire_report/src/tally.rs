@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, HashMap};
 use tamaire_logbook::{Event, Round, RoundEnd};
 use tamaire_play::Route;
 
-/// Last index of [`Figures::rounds_per_visit`]. Visits with more rounds count there.
+/// Last index of [`Figures::rounds_per_visit`]. Visits with more rounds count at this index.
 const MOST_ROUNDS: usize = 20;
 /// Number of pieces above which [`Figures::pieces`] has one entry for all larger numbers.
 const MOST_PIECES: u32 = 128;
@@ -84,8 +84,8 @@ impl Tally {
         }
     }
 
-    /// Counts a round that belongs to `visit`, which is at index `place`. With `keeps_replays`, keeps the
-    /// replay if the round is one of the best.
+    /// Counts a round of `visit`, which has the index `place`. With `keeps_replays`, keeps the replay if the
+    /// round is one of the best.
     pub fn round(
         &mut self,
         round: &Round,

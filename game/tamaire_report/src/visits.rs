@@ -30,7 +30,7 @@ pub struct Visits {
     pub stands: Names,
     /// Languages by number.
     pub languages: Names,
-    /// Number of repeated rows.
+    /// Number of rows of visits that had been read already.
     pub repeated: u64,
     places: HashMap<Id, u32>,
     from: Option<Day>,
@@ -54,9 +54,9 @@ impl Visits {
         }
     }
 
-    /// Adds a row. Of several rows with the same id, the first counts. If its language is empty, a round
-    /// created it, and the next row with a language replaces it. The end comes from the first row that has
-    /// one.
+    /// Adds a row of a visit. If several rows have the same id, the first one counts, with the end from the
+    /// first row that has one. A row with an empty language was created by a round. The next row of the visit
+    /// with a language replaces its values.
     pub fn add(&mut self, visit: &Visit) {
         let language = self.languages.number(&visit.language);
         let Some(&place) = self.places.get(&visit.id) else {
@@ -74,8 +74,8 @@ impl Visits {
         }
     }
 
-    /// Returns the index of a round's visit, if the visit counts. If no row of the visit was read, the visit
-    /// is created and begins with this round.
+    /// Returns the index of a round's visit; `None` if the visit began on no selected day. If no row of the
+    /// visit was read, the visit is created and begins with this round.
     pub fn of(&mut self, round: &Round) -> Option<u32> {
         let place = match self.places.get(&round.visit) {
             Some(&place) => place,
@@ -129,7 +129,7 @@ impl Names {
         number
     }
 
-    /// Returns the text with a number from [`Names::number`].
+    /// Returns the text to which [`Names::number`] gave this number.
     pub fn text(&self, number: u32) -> &str {
         &self.texts[number as usize]
     }

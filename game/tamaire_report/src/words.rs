@@ -118,9 +118,9 @@ pub struct Reading {
     pub strategies: fn(Strategies, &Figures) -> String,
     /// Sentence on whether visitors won without an explanation.
     pub unexplained: fn(Unexplained, &Figures) -> String,
-    /// Sentence on whether winners tried another way; the first argument tells whether the data suffice.
+    /// Sentence on whether winners tried another route; the first argument tells whether the data suffice.
     pub switching: fn(bool, &Figures) -> String,
-    /// Limits of the logbooks.
+    /// Text on what the logbooks cannot tell.
     pub unknown: &'static str,
 }
 
@@ -144,7 +144,7 @@ fn busiest(figures: &Figures) -> Option<(usize, u64)> {
         .filter(|(_, visits)| *visits > 0)
 }
 
-/// Returns the number of rounds that ended in two pieces, and in more than 128.
+/// Returns the number of rounds that ended in two pieces, and the number that ended in more than 128.
 fn halves_and_dust(figures: &Figures) -> [u64; 2] {
     let of = |from: u32| {
         let bin = figures.pieces.iter().find(|bin| bin.from == from);
@@ -153,7 +153,7 @@ fn halves_and_dust(figures: &Figures) -> [u64; 2] {
     [of(2), of(129)]
 }
 
-/// Returns the number of visits with exactly one round, and with several.
+/// Returns the number of visits with exactly one round, and the number with several.
 fn once_and_often(figures: &Figures) -> [u64; 2] {
     let often = figures.rounds_per_visit.iter().skip(2).sum();
     [figures.rounds_per_visit.get(1).copied().unwrap_or(0), often]

@@ -13,7 +13,7 @@ const RADIUS: f32 = 20.0;
 #[derive(Debug, Default)]
 pub(super) struct Dwell {
     on: Option<Id>,
-    /// Time on this widget [s].
+    /// Time for which the mouse has stayed on the widget [s].
     seconds: f32,
     /// Whether the mouse has moved since the screen appeared. A widget that appears under an unmoved mouse is
     /// not clicked.
@@ -21,7 +21,8 @@ pub(super) struct Dwell {
 }
 
 impl Dwell {
-    /// Advances the time with the mouse on `on`. Returns true once, when the widget is to be clicked.
+    /// Adds `seconds` [s] to the time for which the mouse has stayed on the widget `on`. Another widget
+    /// restarts this time. Returns true once, when the widget is to be clicked.
     pub(super) fn pass(&mut self, on: Option<Id>, has_moved: bool, seconds: f32) -> bool {
         self.has_moved |= has_moved;
         let on = on.filter(|_| self.has_moved);

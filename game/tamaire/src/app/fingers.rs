@@ -6,11 +6,11 @@ use crate::input::Action;
 use egui::{Event, Pos2, TouchDeviceId, TouchId, TouchPhase};
 use std::collections::BTreeMap;
 
-/// Distance after which it is decided whether a finger moves vertically or horizontally [points].
+/// Distance that a finger must move before its movement is taken as either vertical or horizontal [points].
 const DECIDED: f32 = 10.0;
 
-/// The fingers on a touch screen. egui treats the first one as a mouse. Each further finger moves either
-/// vertically or horizontally, depending on its first movement.
+/// Fingers on a touch screen. egui treats the first finger as a mouse. The movement of each further finger
+/// counts either vertically or horizontally, depending on its first direction.
 #[derive(Debug, Default)]
 pub(super) struct Fingers {
     /// The pointing finger and its position.
@@ -27,8 +27,9 @@ type Finger = (TouchDeviceId, TouchId);
 
 #[derive(Debug)]
 struct Drag {
-    /// Current position, and the position up to which the movement was counted.
+    /// Current position.
     now: Pos2,
+    /// Position up to which the movement was added to the drag distance.
     at: Pos2,
     way: Option<DragAxis>,
 }
@@ -39,7 +40,7 @@ enum DragAxis {
     Sideways,
 }
 
-/// Distance that the further fingers moved [points].
+/// Distance that all fingers except the pointing one moved [points].
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub(super) struct DragDistance {
     /// Distance upwards.
@@ -49,8 +50,8 @@ pub(super) struct DragDistance {
 }
 
 impl Fingers {
-    /// Reads the touch events of a frame. Returns those of `buttons` that a finger has pressed, except the
-    /// finger that egui treats as a mouse.
+    /// Reads the touch events of a frame. Returns the entries of `buttons` on which a finger was put down.
+    /// Leaves out the finger that egui treats as a mouse.
     pub(super) fn read_events(
         &mut self,
         events: &[Event],
@@ -59,7 +60,8 @@ impl Fingers {
         self.drawn = DragDistance::default();
         let mut pressed: Vec<ScreenButton> = Vec::new();
         for event in events {
-            // The end of a touch is not reported while the window has no focus, so all fingers are forgotten.
+            // Forgets all fingers when the window loses the focus, because the end of a touch is then not
+            // reported.
             if let Event::WindowFocused(false) = event {
                 *self = Self::default();
             }
@@ -79,7 +81,8 @@ impl Fingers {
                 let button = buttons.iter().find(|button| button.rect.contains(pos));
                 match button.filter(|_| phase == TouchPhase::Start) {
                     Some(&button) => {
-                        // egui itself clicks the button when the finger that it treats as a mouse is lifted.
+                        // Skips the finger that egui treats as a mouse: egui clicks the button itself when
+                        // this finger is lifted.
                         if !is_mouse {
                             pressed.push(button);
                         }
@@ -92,13 +95,13 @@ impl Fingers {
         pressed
     }
 
-    /// Returns the actions of the buttons that are held.
+    /// Returns the actions of the screen buttons that fingers hold.
     pub(super) fn pressed(&self) -> impl Iterator<Item = Action> {
         self.holding.values().copied()
     }
 
-    /// Whether a finger is on the screen. Then mouse events are ignored: when the first finger lifts, a
-    /// browser treats one of the remaining ones as the mouse.
+    /// Whether a finger is on the screen. Mouse events are ignored in this case: when the first finger lifts,
+    /// a browser treats a remaining finger as the mouse.
     pub(super) fn are_down(&self) -> bool {
         self.first.is_some() || !self.others.is_empty() || !self.holding.is_empty()
     }
@@ -108,12 +111,13 @@ impl Fingers {
         self.first.map(|(_, at)| at)
     }
 
-    /// Position of the finger after the pointing one.
+    /// Position of a second finger, besides the pointing one.
     pub(super) fn second(&self) -> Option<Pos2> {
         self.others.values().next().map(|drag| drag.now)
     }
 
-    /// Returns the distance that further fingers moved since the last call.
+    /// Returns the distance that all fingers except the pointing one moved in this frame, and resets the
+    /// distance to zero.
     pub(super) fn take(&mut self) -> DragDistance {
         std::mem::take(&mut self.drawn)
     }
@@ -187,7 +191,8 @@ mod tests {
         let mut fingers = Fingers::default();
         let first = [(1, Start, [100.0, 100.0]), (1, Move, [300.0, 300.0])];
         assert_eq!(drawn(&mut fingers, &first), [0.0; 2]);
-        // The direction is decided only after a distance, which then counts.
+        // The second finger moves nothing until its direction is clear, after 10 points. Then the whole
+        // distance counts.
         assert_eq!(
             drawn(
                 &mut fingers,

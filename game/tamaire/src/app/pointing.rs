@@ -1,4 +1,4 @@
-//! Pointing with mouse and fingers, raising the hand in space, and turning the camera.
+//! Pointing with mouse and fingers, raising the hand in 3D, and turning the camera.
 
 use super::fingers::Fingers;
 use crate::game::{Game, Screen};
@@ -14,7 +14,7 @@ const CUT: f32 = 0.0012;
 const CUTTING: f32 = 0.4;
 /// Camera rotation by a mouse or finger drag [rad/point].
 const DRAG: f32 = 0.006;
-/// Distance below which a point counts as on an obstacle [m].
+/// Distance from an obstacle below which a point counts as lying on the obstacle [m].
 const NEAR: f32 = 1e-3;
 /// Camera rotation speed with a held key or a fully deflected stick [rad/s].
 const TURN: f32 = 1.5;
@@ -22,8 +22,8 @@ const TURN: f32 = 1.5;
 /// Stores the position at which the mouse or the first finger points, until a tick has used it. Ignores a
 /// pointer that is on a button or that turns the camera.
 pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
-    // Only the mouse is ignored on a button. `Fingers` handles fingers: one on a button does not point, but
-    // another one may.
+    // A mouse on a button does not point. Fingers need no such check: `Fingers` leaves out a finger on a
+    // button, while another finger may point.
     let is_on_button =
         !fingers.are_down() && ctx.interaction_snapshot(|seen| !seen.hovered.is_empty());
     let is_on = game.screen() == Screen::Play;
@@ -46,8 +46,8 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     let round = game.bout.round();
     let position = match round {
         AnyRound::Plane(_) => view.to_world(at, 0.0),
-        // In space the pointer is projected onto the floor and moves the shadow of the hand. The hand keeps
-        // its height, so it does not jump sideways after it was raised.
+        // In 3D the pointer is projected onto the floor and sets the horizontal position of the hand, which
+        // keeps its height. Raising the hand therefore does not move it sideways.
         AnyRound::Space(in_space) => {
             let goal = game
                 .controls
@@ -60,22 +60,23 @@ pub(super) fn point(game: &mut Game, ctx: &Context, fingers: &Fingers) {
     game.controls.devices.pointer = Some(in_steps(position));
 }
 
-/// Rounds coordinates to multiples of 1/1024 m [m]. This is finer than a pixel, and halves the length of the
-/// coordinates in a link.
+/// Rounds coordinates to multiples of 1/1024 m [m]. The steps are finer than a pixel and halve the length of
+/// the coordinates in a link.
 fn in_steps(at: Vec3) -> Vec3 {
     const STEPS: f32 = 1024.0;
     (at * STEPS).round() / STEPS
 }
 
-/// Height of the surface below the start of the first hand [m]: the floor or a shelf. Does not change when
-/// the hand passes an edge, so that nothing jumps there.
+/// Height of the floor or shelf below the start position of the first hand [m]. The height does not depend on
+/// the current position of the hand, so that nothing jumps when the hand passes an edge.
 fn floor(round: &Round<Dim3>) -> f32 {
     let lowest = round.level().arena()[0].y;
     let bodies = round.world().rigid_bodies();
     let fixed = bodies.filter(|(_, body)| body.motion_type() == MotionType::Fixed);
     let mut at = round.start(0);
     while at.y > lowest {
-        // Nothing is closer than `free`, so stepping down by it is safe (sphere tracing).
+        // Sphere tracing: no obstacle is closer than `free`, so a downward step of `free` cannot pass through
+        // an obstacle.
         let free = fixed.clone().map(|(_, body)| body.shape().distance(at).0);
         let free = free.fold(f32::MAX, f32::min);
         if free < NEAR {
@@ -86,13 +87,13 @@ fn floor(round: &Round<Dim3>) -> f32 {
     lowest
 }
 
-/// Position of the mouse, if it points: it moves or its primary button is down, and it does not turn the
-/// camera.
+/// Position of the mouse, or `None` if the mouse does not point. The mouse points while it moves or its
+/// primary button is down, unless it turns the camera.
 fn mouse_at(ctx: &Context) -> Option<Pos2> {
     ctx.input(|input| {
         let pointer = &input.pointer;
-        // A window that opens under a resting mouse receives a pointer position that is not the player's
-        // input.
+        // A mouse at rest does not point: a window that opens under it receives a pointer position that is
+        // not the player's input.
         let has_moved = pointer.delta() != egui::Vec2::ZERO;
         let points = pointer.button_down(PointerButton::Primary) || has_moved;
         let turns = pointer.button_down(PointerButton::Secondary);
@@ -100,12 +101,12 @@ fn mouse_at(ctx: &Context) -> Option<Pos2> {
     })
 }
 
-/// Applies lifting, cutting and camera input.
+/// Lifts the hand, cuts bodies open and moves the camera, as the player's input demands.
 ///
-/// - Lift (space): the wheel and a second finger.
-/// - Cut bodies open (element view): the wheel, keys and pads.
-/// - Camera: mouse, second finger, keys, sticks and pads turn it. A double click with the right button resets
-///   it.
+/// - Lift (in 3D): the wheel and a second finger.
+/// - Cut bodies open (in the element view): the wheel, keys and pads.
+/// - Turn the camera: mouse, second finger, keys, sticks and pads. A double click with the right button
+///   resets the camera.
 pub(super) fn look_around(game: &mut Game, ctx: &Context, fingers: &mut Fingers) {
     let (wheel, mouse, seconds) = ctx.input(|input| {
         let turns = input.pointer.button_down(PointerButton::Secondary);
@@ -122,7 +123,7 @@ pub(super) fn look_around(game: &mut Game, ctx: &Context, fingers: &mut Fingers)
             .button_double_clicked(PointerButton::Secondary)
     });
     let fingers = fingers.take();
-    // The hand rises by the distance that the finger moved in the world.
+    // Converts the upward drag to metres in the world, so that the hand follows the finger.
     let metres = game.bout.view.map_or(0.0, |view| 1.0 / view.scale);
     game.controls.devices.lift += metres * fingers.up;
     let deeper =

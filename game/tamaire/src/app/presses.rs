@@ -4,7 +4,7 @@
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, RawInput};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Keys without auto-repeat. A repeated press would close the screen that the first one has just opened.
+/// Keys without auto-repeat. A repeated press would close the screen that the initial press has just opened.
 const ONCE: [Key; 3] = [Key::Escape, Key::Enter, Key::Space];
 
 /// egui plugin that inserts and filters input events.
@@ -23,7 +23,7 @@ pub(super) struct Waiting {
     /// Whether the up and down keys move the focus in the order of the widgets instead of to the widget above
     /// or below.
     pub(super) in_order: bool,
-    /// The keys of [`ONCE`] that are held.
+    /// Keys of [`ONCE`] that are held down.
     held: Vec<Key>,
 }
 

@@ -1,4 +1,4 @@
-//! Play with one switch, which is the space key, Enter, or the first button of a stick or pad.
+//! Play with a single switch: the space key, Enter, or the first button of a stick or pad.
 
 use super::presses::Presses;
 use crate::game::{Game, Screen};
@@ -6,10 +6,10 @@ use crate::input::{Action, InputSource};
 use egui::{Context, Key};
 use sticks::{Control, PadButton};
 
-/// Scanning: offers the possible actions one after the other.
+/// Scanning for players with a single switch: offers the possible actions one after the other.
 #[derive(Debug, Default)]
 pub(super) struct Switch {
-    /// Time for which the focused widget of a menu has been offered [steps].
+    /// Time for which the focused widget of a menu has been offered, in units of the scanning step.
     offered_for: f32,
 }
 
@@ -22,8 +22,8 @@ impl Switch {
         matches!(control, Control::Pad(PadButton::South) | Control::Button(0))
     }
 
-    /// Advances scanning: in a round it offers actions such as moving the hand, in a menu it moves the focus.
-    /// Does nothing if scanning is off.
+    /// Advances scanning by `seconds` [s]: offers the next action in a round, or focuses the next widget in a
+    /// menu. Does nothing if scanning is off.
     pub(super) fn pass(&mut self, game: &mut Game, presses: &Presses, ctx: &Context, seconds: f32) {
         game.controls.devices.taken = None;
         let step = game.settings.scanning.step();

@@ -34,7 +34,7 @@ pub struct Config {
     pub sound: SoundConfig,
     /// Force feedback.
     pub force: ForceConfig,
-    /// Souvenirs for visitors.
+    /// Souvenirs: QR codes for visitors and clips for the operator.
     #[serde(default)]
     pub take_home: TakeHome,
     /// Staff access.
@@ -77,7 +77,7 @@ pub struct ForceConfig {
     pub calls: bool,
 }
 
-/// Souvenirs for visitors.
+/// Souvenirs: QR codes for visitors and clips for the operator.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TakeHome {
@@ -143,7 +143,7 @@ checked! {
     }
 }
 checked! {
-    /// Built-in levels, chosen by id.
+    /// One to three built-in levels that can be won, given by their ids.
     Levels(Vec<Arc<Level>>), Vec<String>, |ids| {
         if !(1..=MOST_LEVELS).contains(&ids.len()) {
             return Err(format!("expected 1 to {MOST_LEVELS} levels, found {}", ids.len()));
@@ -232,8 +232,8 @@ impl TryFrom<StatedHours> for Hours {
 }
 
 impl Hours {
-    /// Whether the stand is open at `now`. With a closing time before the opening time, it is open over
-    /// midnight.
+    /// Whether the stand is open at `now`. If the closing time is before the opening time, the stand is open
+    /// over midnight.
     pub fn is_open(&self, now: Time) -> bool {
         let (open, close) = (self.open.0, self.close.0);
         match open <= close {
@@ -247,7 +247,7 @@ impl Config {
     /// Parses a configuration file.
     ///
     /// # Errors
-    /// Describes the problem and its line.
+    /// The error text describes the problem and names its line in the file.
     pub fn read(text: &str) -> Result<Self, String> {
         toml::from_str(text).map_err(|error| error.to_string())
     }
@@ -280,12 +280,14 @@ pub enum ConfigChange {
 }
 
 impl ConfigChange {
-    /// Returns `text` with this change. The rest of the file, including comments, stays as the operator wrote
-    /// it.
+    /// Returns the configuration file `text` with this change. All other lines, including comments, stay as
+    /// the operator wrote them.
     ///
-    /// Describes the problem in the file and its line, or the reason why the change is invalid.
+    /// # Errors
+    /// The error text describes a problem in the file and names its line, or tells why the change is invalid.
     pub fn in_text(&self, text: &str) -> Result<String, String> {
-        // Checked first, because the operator may have edited the file since it was last read.
+        // Reports an error that was in the file before the change: the operator may have edited the file
+        // since the stand last read it.
         Config::read(text)?;
         let mut file: DocumentMut = text.parse().map_err(|error| format!("{error}"))?;
         match self {

@@ -20,7 +20,7 @@ impl Code {
     /// QR code.
     pub fn of(page: &str, replay: &Replay) -> Option<Self> {
         let address = address(page, &replay.code().ok()?);
-        // A screen has no stains, so the lowest level of error correction is enough.
+        // A code on a screen cannot be stained, so the lowest level of error correction is enough.
         let code = QrCode::with_error_correction_level(&address, EcLevel::L).ok()?;
         let dark = code.to_colors().into_iter();
         Some(Self {

@@ -14,17 +14,17 @@ use tamaire_play::Replay;
 
 /// Number of the day's best rounds that are shown while the stand is idle.
 const BEST: usize = 5;
-/// Interval between queries for the figures of the day and the best rounds while the stand is idle [s]. They
-/// are repeated because each query covers only one level, and because a new day may have begun.
+/// Interval between two queries to the logbook while the stand is idle [s]. A query returns the figures of
+/// the day and the best rounds of one level. The levels take turns.
 const ASKED: f32 = 60.0;
-/// Interval between checks whether a query was answered [s]. An answer is copied with all its rounds, which
-/// would be wasteful in each frame.
+/// Interval between two checks whether a query was answered [s]. A check copies the answer with all its
+/// rounds, which would be wasteful in each frame.
 const LOOKED: f32 = 1.0;
 /// Free disk space below which no clips are made [bytes].
 const ROOM: u64 = 500 << 20;
-/// Maximum number of rounds that wait for their clip.
+/// Maximum number of won rounds that wait until a clip of them is made.
 const WAITING: usize = 8;
-/// Smallest clock change that is logged [s].
+/// Smallest change of the system clock that is logged [s].
 const LEAP: f64 = 60.0;
 
 /// Storage of a stand.
@@ -33,7 +33,7 @@ pub struct Memory {
     stand: String,
     folder: StandFolder,
     clips: Files,
-    /// Won rounds of which a clip will be made when the stand is idle.
+    /// Won rounds from which clips will be made while the stand is idle.
     waiting: VecDeque<Arc<Replay>>,
     /// Monotonic time and wall-clock time of the same moment. Changes of the system clock are detected from
     /// them.
@@ -41,7 +41,8 @@ pub struct Memory {
     /// Last known problem of the recorder.
     trouble: Option<String>,
     best: Vec<Id>,
-    /// Number of queries for best rounds up to now. It selects the level of the next query.
+    /// Number of queries for best rounds so far. The number, modulo the number of levels, selects the level
+    /// of the next query.
     turn: usize,
     /// Time since the last query [s].
     asked: f32,
@@ -173,7 +174,8 @@ impl Memory {
         self.look_at_clock();
         let trouble = self.recorder.health().problem;
         if trouble != self.trouble {
-            // Only printed here: the recorder itself logs important problems as soon as it can write.
+            // Prints the problem only to the terminal: the recorder itself logs important problems as soon as
+            // it can write.
             if let Some(trouble) = &trouble {
                 eprintln!("tamaire: visits are not being logged: {trouble}");
             }

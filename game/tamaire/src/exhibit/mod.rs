@@ -42,8 +42,8 @@ use visit::Visit;
 pub const CORNER: f32 = 90.0;
 /// Time in which presses are ignored after the screen has changed or the result has appeared [s].
 const SETTLED: f32 = 0.4;
-/// Delay between the result and its QR code [s]. The code may cover the body in the basket, which is shown
-/// first.
+/// Delay between the appearance of the result of a round and of its QR code [s]. The code may cover the
+/// basket, so visitors first see the body in the basket.
 const BEAMING: f32 = 2.0;
 /// Minimum time without input on staff pages before the countdown begins [s].
 const STAFF: Seconds = Seconds(120.0);
@@ -51,13 +51,13 @@ const STAFF: Seconds = Seconds(120.0);
 /// State of a stand.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Idle: rounds play by themselves.
+    /// Idle: recorded rounds are shown to attract visitors.
     Attract,
     /// A visitor chooses a level.
     Choice,
     /// A visitor plays or looks at the result.
     Visit,
-    /// The stand waits for the PIN.
+    /// The stand waits for the PIN of the staff.
     PinEntry,
     /// A staff page is shown.
     Staff(StaffPage),
@@ -69,7 +69,7 @@ pub enum Phase {
 pub struct Stand {
     /// Configuration by the operator.
     pub config: Config,
-    /// Current state.
+    /// Current state of the stand.
     pub phase: Phase,
     /// Attention of the visitor, detected from the input.
     pub attention: Attention,
@@ -81,11 +81,11 @@ pub struct Stand {
     pub frames: FrameTimes,
     /// Message for staff: the error of the last change, or the result of an export.
     pub answer: Option<String>,
-    /// Whether staff ended the stand.
+    /// Whether staff requested the end of the program.
     pub is_ended: bool,
     /// All built-in levels.
     pub known: Vec<Arc<Level>>,
-    /// Time in the current state [s].
+    /// Time since the stand changed its state [s].
     since: f32,
     /// Time for which the result has been shown [s].
     result_since: f32,
@@ -108,7 +108,7 @@ impl Stand {
     /// exist.
     ///
     /// # Errors
-    /// Names the file, the problem and its line, and the expected value.
+    /// The error text names the file, the problem and its line, and the expected value.
     pub fn open(file: TextFile) -> Result<Self, String> {
         let text = file.read_or(config::DEFAULT_CONFIG)?;
         let config = Config::read(&text);
@@ -142,7 +142,7 @@ impl Stand {
         self
     }
 
-    /// Puts a game into public mode and resets it.
+    /// Puts a game into public mode and resets its settings and records.
     pub fn prepare(&mut self, game: &mut Game) {
         game.public.get_or_insert_default();
         self.known = game.levels.clone();
@@ -150,7 +150,7 @@ impl Stand {
         self.memory.ask(&self.config);
     }
 
-    /// Advances a frame of `seconds` [s]: detects visitors and changes the state.
+    /// Advances the stand by a frame of `seconds` [s]: detects visitors and changes the state of the stand.
     pub fn pass(&mut self, game: &mut Game, ctx: &Context, seconds: f32) {
         let phase = self.phase;
         let now = Instant::now();
@@ -170,7 +170,8 @@ impl Stand {
         self.knock(game, ctx, seconds);
         let mut times = self.config.times;
         if matches!(self.phase, Phase::Staff(_)) {
-            // Staff may read the figures for a long time without any input.
+            // The countdown begins later on staff pages, because staff may read the figures for a long time
+            // without any input.
             times.rest = times.rest.max(STAFF);
         }
         let attention = self.presence.pass(seconds, is_touched, &times);
@@ -221,13 +222,13 @@ impl Stand {
         self.home.as_ref().filter(|_| self.result_since > BEAMING)
     }
 
-    /// Whether presses are accepted. Just after a change of phase they are not, so that the press that caused
-    /// the change has no further effect.
+    /// Whether the screen accepts presses. Presses are ignored just after a change of phase, so that the
+    /// press that caused the change has no further effect.
     pub fn is_settled(&self) -> bool {
         self.since > SETTLED
     }
 
-    /// Whether the mouse has not moved for long, so that the pointer is hidden.
+    /// Whether the pointer is hidden because the mouse has not moved for long.
     pub fn is_pointer_left(&self) -> bool {
         self.presence.is_pointer_left(&self.config.times)
     }
@@ -244,7 +245,7 @@ impl Stand {
         }
     }
 
-    /// Starts the configured level with this index.
+    /// Starts the level with index `index` in the configuration.
     pub fn choose(&mut self, game: &mut Game, index: usize) {
         self.phase = Phase::Visit;
         self.home = None;
@@ -301,7 +302,8 @@ impl Stand {
         self.answer = None;
     }
 
-    /// Returns to the round if any other screen is open, and updates the time of the result.
+    /// Goes back to the round if a screen other than the round or its result is open. Measures the time for
+    /// which the result has been shown.
     fn lead_back(&mut self, game: &mut Game, seconds: f32) {
         self.result_since = match game.screen() {
             Screen::Result => self.result_since + seconds,
@@ -316,8 +318,8 @@ impl Stand {
         game.notices.clear();
     }
 
-    /// Logs the rounds that ended since the last call. `end` is the reason why a round that was not won
-    /// ended.
+    /// Logs the rounds that ended since the last call. A round that was not won is logged with `end` as the
+    /// reason for its end.
     fn collect(&mut self, game: &mut Game, end: RoundEnd) {
         let ended = game.public.as_mut();
         let ended = ended.map(|public| std::mem::take(&mut public.ended));
@@ -365,7 +367,7 @@ impl Stand {
     /// long enough.
     fn knock(&mut self, game: &mut Game, ctx: &Context, seconds: f32) {
         let is_chord = { game.controls.devices.sticks.devices.iter() }.any(staff::is_chord);
-        // The upper right corner, because visitors have nothing to press there.
+        // Uses the upper right corner, because visitors have nothing to press there.
         let edge = ctx.content_rect().right_top() - egui::vec2(CORNER, 0.0);
         let corner = egui::Rect::from_min_size(edge, egui::Vec2::splat(CORNER));
         let is_corner = ctx.input(|input| {
@@ -378,7 +380,8 @@ impl Stand {
             game.go(Screen::Title);
             match self.since > 2.0 * staff::HELD {
                 true => self.collect(game, RoundEnd::Left),
-                // The hold itself may have started a visit and a round, which do not count.
+                // Discards a round that the hold itself may have started, because holding the corner or the
+                // buttons also counts as input of a visitor.
                 false => game.public.get_or_insert_default().ended.clear(),
             }
             self.presence.begin();
@@ -427,8 +430,8 @@ impl Stand {
         }
     }
 
-    /// Ends the current visit when the program closes, and logs the end of the stand if staff requested it.
-    /// Pending entries are written when `self` is dropped.
+    /// Ends the current visit, because the program is closing. Logs a regular end if staff requested it.
+    /// Dropping `self` later writes the entries that are still pending.
     pub fn close(&mut self, game: &mut Game) {
         self.end_visit(game, RoundEnd::Cut);
         if self.is_ended {

@@ -5,9 +5,10 @@ use egui::{Context, Event};
 use std::collections::BTreeMap;
 use sticks::{Change, DeviceId, Snapshot};
 
-/// Change of a stick or trigger axis that counts as input (full deflection = 1). Worn sticks tremble by less.
+/// Smallest change of a stick or trigger axis that counts as input; full deflection = 1. Worn sticks tremble
+/// by less.
 const MOVED: f32 = 0.15;
-/// Mouse travel that counts as input, however slow the mouse is [points]. A shock to the table moves it by
+/// Smallest mouse travel that counts as input, at any speed [points]. A shock to the table moves the mouse by
 /// less.
 const PUSHED: f32 = 4.0;
 /// Time without mouse movement after which the measured travel restarts from zero [s].
@@ -35,13 +36,13 @@ pub struct Presence {
     /// Mouse travel that has not counted as input yet [points].
     pushed: f32,
     before: Snapshot,
-    /// Positions of sticks and triggers at their last movement that counted.
+    /// Positions of sticks and triggers when their movement last counted as input.
     axes: BTreeMap<DeviceId, [f32; 6]>,
 }
 
 impl Presence {
-    /// Whether there was input since the last call. `they_stir` = the game itself moves the sticks, so their
-    /// positions do not count.
+    /// Whether there was input since the last call. With `they_stir`, the game itself moves the sticks, so
+    /// stick positions are ignored.
     pub fn is_touched(&mut self, ctx: &Context, sticks: &Snapshot, they_stir: bool) -> bool {
         let by_hand = ctx.input(|input| input.events.iter().any(is_deed));
         let way = ctx.input(|input| input.pointer.delta().length());
@@ -105,7 +106,7 @@ impl Presence {
         }
     }
 
-    /// Restarts the time without input, as at the beginning of a visit.
+    /// Resets the time without input to zero, as at the beginning of a visit.
     pub fn begin(&mut self) {
         self.rest = 0.0;
     }

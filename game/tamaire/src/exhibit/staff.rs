@@ -3,14 +3,14 @@
 use super::config::Pin;
 use sticks::{Device, PadButton};
 
-/// Time for which the entrance must be held [s].
+/// Time for which the hidden corner or the buttons must be held to open the staff entrance [s].
 pub const HELD: f32 = 3.0;
 /// Fraction of [`HELD`] before which no progress is shown, so that an accidental touch does not reveal the
 /// entrance.
 const HESITATION: f32 = 0.3;
 /// Number of wrong PINs after which the first pause begins.
 const SLIPS: u32 = 3;
-/// Length of the first pause [s]. Each further wrong PIN doubles it.
+/// Length of the first pause [s]. Each further wrong PIN doubles the pause.
 const PAUSE: f64 = 30.0;
 /// Maximum length of a pause [s].
 const LONGEST: f64 = 3600.0;
@@ -49,7 +49,7 @@ impl StaffPage {
 /// State of the hidden entrance and the PIN entry.
 #[derive(Debug, Default)]
 pub struct Entrance {
-    /// Time for which the entrance has been held [s].
+    /// Time for which the hidden corner or the buttons have been held [s].
     held: f32,
     /// Entered digits.
     pub entered: String,
@@ -75,7 +75,8 @@ pub enum PinResult {
 }
 
 impl Entrance {
-    /// Advances the time by `seconds` [s], with the entrance held or not. Returns whether it opens.
+    /// Adds `seconds` [s] to the holding time, or resets the holding time if `is_held` is false. Returns
+    /// whether the entrance opens.
     pub fn pass(&mut self, is_held: bool, seconds: f32) -> bool {
         self.held = if is_held { self.held + seconds } else { 0.0 };
         let opens = self.held > HELD;

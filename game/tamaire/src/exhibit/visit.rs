@@ -15,7 +15,7 @@ pub struct Visit {
     pub began: Moment,
     /// Whether the visit is in the logbook.
     pub is_noted: bool,
-    /// Way to win the current round that was suggested to the visitor, if any.
+    /// Route that the game suggested to the visitor for the current round, if any.
     pub dare: Option<Route>,
     rounds: u32,
 }
@@ -54,7 +54,7 @@ impl Visit {
             pieces: won.map_or(progress.pieces, |won| won.pieces) as u32,
             lost: won.map_or(0, |won| won.lost) as u32,
             dare: self.dare.take(),
-            // Encoding cannot fail for a round that was just played.
+            // Encoding cannot fail for a round that was just played, so the empty default is never used.
             replay: ended.replay.fragment().unwrap_or_default(),
         }
     }

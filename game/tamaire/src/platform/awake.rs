@@ -1,6 +1,6 @@
 //! Keeps the screen on.
 
-/// Disables the screen saver and power saving of an X server. Does nothing if there is none.
+/// Disables the screen saver and power saving of an X server. Does nothing without an X server.
 ///
 /// # Errors
 /// The reason why the request could not be sent.
@@ -16,7 +16,7 @@ pub fn keep_awake() -> Result<(), String> {
     let (server, _) = x11rb::connect(None).map_err(|error| why(&error))?;
     let quiet = server.set_screen_saver(0, 0, Blanking::NOT_PREFERRED, Exposures::NOT_ALLOWED);
     quiet.map_err(|error| why(&error))?;
-    // A server without the DPMS extension never switches the screen off.
+    // Only a server with the DPMS extension switches the screen off to save power.
     if server
         .extension_information(dpms::X11_EXTENSION_NAME)
         .is_ok_and(|found| found.is_some())
@@ -26,7 +26,7 @@ pub fn keep_awake() -> Result<(), String> {
     server.flush().map_err(|error| why(&error))
 }
 
-/// Does nothing: here the screen is configured in the system settings.
+/// Does nothing: on this platform the screen is configured in the system settings.
 #[cfg(not(all(unix, not(target_os = "macos"))))]
 pub fn keep_awake() -> Result<(), String> {
     Ok(())

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 /// Whether file dialogs are supported.
 pub const IS_THERE: bool = true;
 
-/// Minimum time for which a dialog stays open. One that ends sooner never appeared: the system has no dialog.
+/// Minimum time for which a dialog stays open. A dialog that closes sooner never appeared: the system has no
+/// file dialog.
 const SOON: Duration = Duration::from_millis(400);
 
 /// File dialog, which does not block the game.
@@ -22,7 +23,8 @@ impl Dialog {
             return;
         }
         let endings = ["toml", "tamaire", "png", "vox"];
-        // The dialog is created on the window's thread, as some systems require, and awaited on another one.
+        // The dialog is created on the window's thread, as some systems require, and awaited on another
+        // thread.
         let asked = rfd::AsyncFileDialog::new().add_filter(kind, &endings);
         let (asked, began) = (asked.pick_file(), Instant::now());
         let (tell, told) = mpsc::channel();

@@ -1,4 +1,4 @@
-//! Stored data: settings, records, levels, replays and pictures. One thread writes all data, another one
+//! Stored data: settings, records, levels, replays and pictures. One thread writes all data, another thread
 //! makes the pictures.
 
 pub use super::keeping::Damage;
@@ -32,7 +32,7 @@ pub struct Files {
     darkroom: Writer<JobResult>,
     /// Settings used if none are stored.
     usual: Settings,
-    /// Settings to be written, and the time until then [s].
+    /// Text of the settings to be written, and the remaining time until it is written [s].
     resting: Option<(String, f32)>,
     /// Progress of the current picture [%].
     developed: Option<Arc<AtomicU32>>,
@@ -72,7 +72,7 @@ pub enum StorageEvent {
 }
 
 impl Files {
-    /// Uses the data folder of the system.
+    /// Opens the storage in the system's data folder for the game.
     #[cfg(not(target_family = "wasm"))]
     pub fn usual() -> Self {
         let files = match data_folder() {
@@ -84,7 +84,7 @@ impl Files {
         files.speaking(&sys_locale::get_locale().unwrap_or_default())
     }
 
-    /// Uses the browser's storage for this page, or stores nothing if the browser refuses.
+    /// Opens the browser's storage for this page. If the browser refuses, nothing is stored.
     #[cfg(target_family = "wasm")]
     pub fn usual() -> Self {
         let host = super::here::host();
@@ -97,7 +97,7 @@ impl Files {
         files.speaking(&host.language())
     }
 
-    /// Uses the given folder.
+    /// Stores data in the given folder.
     #[cfg(not(target_family = "wasm"))]
     pub fn in_folder(folder: impl Into<std::path::PathBuf>) -> Self {
         Self::on(super::folder::Folder(folder.into()))
@@ -108,7 +108,7 @@ impl Files {
         Self::on(Nowhere { reason: None })
     }
 
-    /// Uses the given storage.
+    /// Stores data in `storage`.
     pub fn on(storage: impl Storage + 'static) -> Self {
         Self {
             storage: Arc::new(storage),
@@ -347,7 +347,7 @@ impl Files {
         news
     }
 
-    /// Stores a won round as the one to race against in its level, unless a faster one is stored.
+    /// Stores a won round as the ghost of its level, unless a faster one is stored.
     pub fn keep_best(&mut self, level: &Level, replay: Replay) {
         let (storage, name) = (self.storage.clone(), name_of_best(level));
         self.writer.write(

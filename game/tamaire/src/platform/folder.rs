@@ -62,8 +62,8 @@ impl Folder {
                     let reason = format!("{}: in use by another program", self.0.display());
                     return Err(io::Error::new(ErrorKind::WouldBlock, reason));
                 }
-                // Some file systems have no locks. Usually only one game runs, so the change goes on without
-                // one.
+                // Some file systems have no locks. The change then goes on without a lock, because usually
+                // only one game runs.
                 Err(TryLockError::Error(_)) => return Ok(lock),
             }
         }
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn concurrent_changes_are_not_lost() {
         let folder = tempfile::tempdir().unwrap();
-        // Separate storages, as in two programs.
+        // Two storages use the same folder, as in two programs.
         let counts = [0, 1].map(|_| {
             let storage = Arc::new(Folder(folder.path().join("new")));
             thread::spawn(move || {

@@ -89,7 +89,7 @@ mod on_disk {
     }
 
     /// Returns the id of a level in a file: a name that the storage accepts. A name without an extension gets
-    /// one, so that it differs from built-in levels.
+    /// `.toml`, so that it differs from the names of built-in levels.
     fn id_of(name: &str) -> String {
         let name = name.trim_start_matches('.');
         let name: String = name.chars().filter(|letter| !letter.is_control()).collect();

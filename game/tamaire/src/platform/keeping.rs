@@ -26,7 +26,7 @@ const TRIES: usize = 8;
 
 pub(super) const RECORDS: &str = "records";
 
-/// Stores a copy of damaged data for the player. Returns its location.
+/// Stores a copy of damaged data for the player. Returns the location of the copy.
 pub(super) fn put_aside(
     storage: &dyn Storage,
     kind: Kind,
@@ -53,7 +53,7 @@ pub(super) fn is_aside(name: &str) -> bool {
     number.is_some_and(|number| number.parse::<u32>().is_ok())
 }
 
-/// Reads a stored level. A damaged one is moved aside.
+/// Reads a stored level. A damaged level is moved aside.
 pub(super) fn read_level(storage: &dyn Storage, name: &str) -> Result<Arc<Level>, Damage> {
     let location = storage.location(Kind::Level, name);
     let refused = |reason: &str, aside| {
@@ -70,7 +70,7 @@ pub(super) fn read_level(storage: &dyn Storage, name: &str) -> Result<Arc<Level>
     };
     level.map(Arc::new).map_err(|reason| {
         let aside = put_aside(storage, Kind::Level, name, &bytes);
-        // If removing fails, the message appears again at the next start.
+        // If the damaged level cannot be removed, the message about it appears again at the next start.
         let aside = aside.and_then(|aside| storage.remove(Kind::Level, name).map(|()| aside));
         refused(&reason, aside.ok())
     })
@@ -92,12 +92,12 @@ pub(super) fn merge_records(
 
 /// Saves a replay and returns its location.
 pub(super) fn save_replay(storage: &dyn Storage, replay: &Replay) -> io::Result<String> {
-    // Fails if the replay cannot be encoded, since such a replay could never be watched.
+    // Returns an error if the replay cannot be encoded, because such a replay could never be watched.
     let text = replay.text_to_keep().map_err(io::Error::other)?;
     save(storage, Kind::Replay, &stem_of(replay), text.as_bytes())
 }
 
-/// Returns the common beginning of the names of a round's files, which a number follows.
+/// Returns the beginning of the file names of a round. A number follows in each name.
 pub(super) fn stem_of(replay: &Replay) -> String {
     plain(&replay.level)
 }
@@ -121,7 +121,7 @@ pub(super) fn name_of_best(level: &Level) -> String {
 /// Stores a win, unless an equally fast or faster one of the same level is stored.
 pub(super) fn keep_best(storage: &dyn Storage, name: &str, replay: &Replay) -> io::Result<()> {
     let Ok(text) = replay.text_to_keep() else {
-        // A replay that cannot be encoded could not be watched.
+        // Skips a replay that cannot be encoded, because such a replay could never be watched.
         return Ok(());
     };
     storage.change(Kind::Best, name, &mut |found| {
@@ -144,8 +144,8 @@ pub(super) fn save(
     let is_listed = |name: &String| names.iter().any(|entry| entry.name == *name);
     let numbered = (1..).map(|number| format!("{stem}-{number}"));
     let mut last = None;
-    // A name may be taken although it is not listed: by something other than a file, or by another program
-    // that was faster.
+    // A name that is not listed may still be taken: by a folder, or by another program that has just used the
+    // name.
     for name in numbered.filter(|name| !is_listed(name)).take(TRIES) {
         let mut is_free = false;
         let written = storage.change(kind, &name, &mut |found| {

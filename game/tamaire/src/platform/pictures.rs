@@ -12,8 +12,8 @@ use tamaire_play::{Playback, Replay};
 pub struct Pictures(Arc<Mutex<Option<Studio>>>);
 
 impl Pictures {
-    /// Makes a picture of a round and returns the bytes of its file. `told` is called with the finished
-    /// share, 0 to 1.
+    /// Makes a picture of a round and returns the bytes of its file. `told` is called with the progress, 0 to
+    /// 1.
     pub async fn shoot(
         &self,
         kind: Kind,

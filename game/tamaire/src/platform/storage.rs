@@ -1,5 +1,5 @@
-//! Storage of the game: bytes by kind and name. On a desktop it is a folder, in a browser its own storage.
-//! The rest of the game does not access files.
+//! Storage of the game: bytes by kind and name. A desktop stores them in a folder, a browser in the browser's
+//! storage. The rest of the game does not access files.
 
 use std::io;
 use std::time::SystemTime;
@@ -22,7 +22,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Maximum size of an entry [bytes]. A longer one was not written by the game and is not read.
+    /// Maximum size of an entry [bytes]. A longer entry cannot come from the game and is not read.
     pub fn most_bytes(self) -> u64 {
         match self {
             Self::Note => 1 << 20,
@@ -74,7 +74,7 @@ pub trait Storage: Send + Sync {
     /// Location of an entry, as text for the player.
     fn location(&self, kind: Kind, name: &str) -> String;
 
-    /// Whether entries can be given to the player as files. False if they are files already.
+    /// Whether entries can be given to the player as files. False if entries are files already.
     fn can_export(&self) -> bool {
         false
     }

@@ -21,9 +21,9 @@ const LIVES: u8 = b'.';
 const ENDS: u8 = b'e';
 /// Maximum time for pending writes after the announcement of the end.
 const ENDING: Duration = Duration::from_secs(30);
-/// Run time below which a crash delays the restart, because the cause may pass.
+/// Run time of the game below which a repeated crash delays the restart, so that a temporary cause can pass.
 const BRIEFLY: Duration = Duration::from_secs(5);
-/// First delay of a restart. It doubles with each further crash soon after a start.
+/// First delay of a restart. The delay doubles with each further crash soon after a start.
 const SHORT_PAUSE: Duration = Duration::from_millis(250);
 /// Usual value of [`SupervisorConfig::pause`], the longest delay of a restart.
 pub const PAUSE: Duration = Duration::from_secs(8);
@@ -36,9 +36,9 @@ const PULSE: Duration = Duration::from_millis(500);
 const STILL: Duration = Duration::from_millis(3500);
 /// Maximum time until the first heartbeat.
 const START: Duration = Duration::from_secs(60);
-/// Number of crashes within `WHILE` after which restarting is given up.
+/// Number of crashes within ten minutes after which the supervisor stops restarting the game.
 pub const MAX_CRASHES: usize = 10;
-/// Period in which crashes are counted.
+/// Period in which crashes are counted for [`MAX_CRASHES`].
 const WHILE: Duration = Duration::from_secs(600);
 /// Interval at which the state of the game is checked.
 const LOOK: Duration = Duration::from_millis(50);
@@ -73,7 +73,7 @@ impl Heartbeat {
 
     /// Announces a regular end of the program, which may take a while.
     pub fn end(&self) {
-        // Without a supervisor the signal is not needed.
+        // Ignores a failure to send, because without a supervisor the signal is not needed.
         let _heard = tell(ENDS);
     }
 }
@@ -101,7 +101,8 @@ pub struct SupervisorConfig {
     pub folder: StandFolder,
     /// Name of the stand.
     pub stand: String,
-    /// Number of crashes within ten minutes after which restarting is given up. Usually [`MAX_CRASHES`].
+    /// Number of crashes within ten minutes after which the supervisor stops restarting the game. Usually
+    /// [`MAX_CRASHES`].
     pub most: usize,
     /// Longest delay of a restart. Usually [`PAUSE`].
     pub pause: Duration,
@@ -117,7 +118,8 @@ enum End {
 /// Runs the game until its regular end.
 ///
 /// # Errors
-/// If the game cannot be started or crashes repeatedly. A static picture was then shown before the return.
+/// If the game cannot be started or crashes repeatedly. The function then shows a static picture before it
+/// returns the error.
 pub fn supervise(plan: &SupervisorConfig) -> Result<(), String> {
     let mut failures: VecDeque<Instant> = VecDeque::new();
     let mut pause = SHORT_PAUSE;
@@ -153,7 +155,7 @@ pub fn supervise(plan: &SupervisorConfig) -> Result<(), String> {
 
 fn join(notes: Vec<JoinHandle<()>>) {
     for note in notes {
-        // A thread that panicked has printed its message.
+        // Ignores a panic of the thread, which has printed its message already.
         let _ended = note.join();
     }
 }
@@ -169,8 +171,8 @@ fn give_up(plan: &SupervisorConfig) -> String {
     say(&format!("tamaire: {reason}"));
     join(vec![note(plan, Kind::GaveUp, reason.clone())]);
     for _ in 0..MAX_CRASHES {
-        // The static picture needs almost no drawing. If showing it fails repeatedly, too, the screen stays
-        // empty.
+        // The static picture needs almost no drawing, so it may work where the game fails. If the picture
+        // fails repeatedly, too, the screen stays empty.
         if run(plan, &plan.calm).0 == End::Meant {
             break;
         }
@@ -201,7 +203,7 @@ fn run(plan: &SupervisorConfig, words: &[OsString]) -> (End, String) {
     let (status, is_still) = wait(&mut child, began, &signs);
     let gone = Instant::now();
     for listener in listeners.into_iter().flatten() {
-        // A child of the game may outlive it and hold the pipe open, so waiting is limited.
+        // The wait is limited: a child process of the game may outlive the game and hold the pipe open.
         while !listener.is_finished() && gone.elapsed() < LAST_WORDS {
             thread::sleep(LOOK);
         }
@@ -247,7 +249,7 @@ fn wait(child: &mut Child, began: Instant, signs: &Mutex<Signs>) -> (Option<Exit
             (None, None) => began.elapsed() > START,
         };
         if is_still {
-            // Killing works for a stopped process, too.
+            // Ends even a process that a signal has stopped.
             let _gone = child.kill();
             return (child.wait().ok(), true);
         }
@@ -325,7 +327,7 @@ fn note(plan: &SupervisorConfig, kind: Kind, record: String) -> JoinHandle<()> {
     })
 }
 
-/// Writes a crash record to a file and deletes the oldest ones.
+/// Writes a crash record to a file and deletes the oldest records.
 fn keep_record(folder: &Path, at: Moment, kind: &Kind, record: &str) -> io::Result<()> {
     fs::create_dir_all(folder)?;
     let mut known: Vec<PathBuf> = fs::read_dir(folder)?

@@ -17,7 +17,7 @@ pub struct Writer<T> {
 }
 
 impl<T: Send + 'static> Writer<T> {
-    /// Creates a writer without jobs. The thread starts with the first one.
+    /// Creates a writer without jobs. The thread starts with the first job.
     pub fn new() -> Self {
         let (teller, results) = channel();
         Self {
@@ -28,7 +28,7 @@ impl<T: Send + 'static> Writer<T> {
         }
     }
 
-    /// Adds a job. `told` converts what it returns to a result of the writer.
+    /// Adds a job. `told` converts the job's return value to a result of the writer.
     pub fn write<V: 'static>(
         &mut self,
         job: impl FnOnce() -> io::Result<V> + Send + 'static,
@@ -69,7 +69,7 @@ impl<T: Send + 'static> Writer<T> {
         let mut results = self.results();
         if let Some((jobs, thread)) = self.thread.take() {
             drop(jobs);
-            // A thread that panicked has printed its message.
+            // Ignores a panic of the thread, which has printed its message already.
             let _ended = thread.join();
             results.extend(self.results());
             self.open = 0;

@@ -36,8 +36,8 @@ pub fn open(path: &Path) -> Result<Connection, Error> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|error| unusable(path, &error))?;
     }
-    // The log is looked for before the file. A program that creates a logbook creates the file before its
-    // log, so a log without a file is always damage.
+    // Looks for the write-ahead log before the database file. A program that creates a logbook creates the
+    // file before its log, so a log without a file is always damage.
     let has_log = size(&sidecar_path(path, SIDECAR_SUFFIXES[0])) > 0;
     let is_there = path.try_exists().map_err(|error| unusable(path, &error))?;
     if !is_there && has_log {
@@ -83,7 +83,7 @@ pub fn read(path: &Path) -> Result<Connection, Error> {
     let connection = connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
     let connection = match check(path, &connection) {
         // In a folder without write permission SQLite cannot create the shared-memory file that readers need.
-        // It needs none for a file that is declared immutable, which is possible without a log.
+        // A file without a write-ahead log can be opened as immutable instead, without shared memory.
         Err(Error::Unusable { .. }) if size(&sidecar_path(path, SIDECAR_SUFFIXES[0])) == 0 => {
             let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI;
             let connection = connect(&immutable_uri(path), flags)?;
@@ -115,7 +115,7 @@ pub fn set_aside(path: &Path, reason: String) -> Result<SetAside, Error> {
         _ => Ok(()),
     };
     // The database is renamed first. If only its `-wal` file is left behind, the next start finds and renames
-    // that file; it is never used for a new database.
+    // that file and never uses it for a new database.
     rename(path, &aside)?;
     for ending in SIDECAR_SUFFIXES {
         rename(&sidecar_path(path, ending), &sidecar_path(&aside, ending))?;
@@ -150,7 +150,7 @@ pub fn map_error(path: &Path, error: rusqlite::Error) -> Error {
             let reason = reason.clone();
             Error::Damaged { path, reason }
         }
-        // The tables lack expected values, or hold values of another type.
+        // Treats missing values and values of an unexpected type as damage.
         (_, Sql::QueryReturnedNoRows | Sql::Utf8Error(..))
         | (_, Sql::InvalidColumnType(..) | Sql::IntegralValueOutOfRange(..))
         | (_, Sql::FromSqlConversionFailure(..)) => Error::Damaged { path, reason },
@@ -179,8 +179,8 @@ fn damaged(path: &Path, reason: &str) -> Error {
     Error::Damaged { path, reason }
 }
 
-/// Creates a file under a temporary name and renames it when it is complete, so that no program opens a
-/// partial one.
+/// Creates a file under a temporary name and renames it when it is complete, so that no program opens an
+/// incomplete file.
 fn create(path: &Path) -> Result<(), Error> {
     let new = path.with_added_extension(format!("new-{}", Id::random()));
     let make = || {
@@ -193,9 +193,9 @@ fn create(path: &Path) -> Result<(), Error> {
         begin(&mut connection).map_err(|error| map_error(path, error))?;
         drop(connection);
         match fs::hard_link(&new, path) {
-            // Another program has created the file meanwhile: that file is used.
+            // Uses the file that another program has created meanwhile.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
-            // Not every file system supports hard links.
+            // Renames the new file instead if the file system does not support hard links.
             Err(_) => fs::rename(&new, path).map_err(|error| unusable(path, &error)),
             Ok(()) => Ok(()),
         }
@@ -210,8 +210,8 @@ fn connect(path: &Path, flags: OpenFlags) -> Result<Connection, Error> {
         let flags = flags | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let connection = Connection::open_with_flags(path, flags)?;
         connection.busy_timeout(BUSY_TIMEOUT)?;
-        // Triggers and functions stored in a file never run. Closing does not copy the log into the database,
-        // so that an unusable file stays unchanged.
+        // Triggers and functions stored in the file are turned off. Closing does not copy the log into the
+        // database, so that an unusable file stays unchanged.
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_TRUSTED_SCHEMA, false)?;
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_ENABLE_TRIGGER, false)?;
         connection.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
@@ -225,7 +225,8 @@ fn check(path: &Path, connection: &Connection) -> Result<(), Error> {
     check_kind(path, connection)?;
     let page = connection.pragma_query_value(None, "page_size", |row| row.get(0));
     let page: u64 = page.map_err(|error| map_error(path, error))?;
-    // With a write-ahead log, the last pages may be in that log only.
+    // Without a write-ahead log, the size of an undamaged file is a multiple of the page size. With a log,
+    // the last pages may be in the log only.
     let has_log = size(&sidecar_path(path, SIDECAR_SUFFIXES[0])) > 0;
     if !has_log && !size(path).is_multiple_of(page) {
         return Err(damaged(path, "the end of the file is missing"));

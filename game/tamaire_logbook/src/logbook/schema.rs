@@ -93,7 +93,8 @@ fn migrate_by(connection: &mut Connection, migrations: &[&str]) -> rusqlite::Res
         return Ok(());
     }
     let transaction = Transaction::new(connection, TransactionBehavior::Immediate)?;
-    // Another program may have migrated the file before the lock was taken.
+    // Reads the version again, because another program may have migrated the file before this transaction
+    // locked it.
     let from = version(&transaction)?.clamp(0, newest);
     for step in &migrations[from as usize..] {
         transaction.execute_batch(step)?;

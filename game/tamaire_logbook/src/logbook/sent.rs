@@ -5,8 +5,8 @@ pub use since::{ChangedRow, SyncPosition, changes, sent, set_sent, unsent};
 
 use rusqlite::{Connection, params};
 
-/// Sets the server for which unsent rows are kept. If it differs from the last server, no row counts as
-/// received.
+/// Sets the server for which unsent rows are kept. If `server` is another server than before, all rows count
+/// as unsent.
 pub fn await_server(connection: &Connection, server: Option<&str>) -> rusqlite::Result<()> {
     let sql = "UPDATE book SET server = ?1, sent = CASE WHEN ?1 IS NULL THEN sent ELSE 0 END WHERE server IS NOT ?1";
     connection.execute(sql, params![server])?;
@@ -27,7 +27,7 @@ mod since {
         Event(Event),
     }
 
-    /// Position up to which the server has received a file.
+    /// Position up to which the server has received a logbook file.
     #[derive(Clone, Debug, PartialEq)]
     pub struct SyncPosition {
         /// Id of the file.
@@ -36,8 +36,8 @@ mod since {
         pub change: i64,
     }
 
-    /// Returns at most `most` changes after number `after`, in their order: the change number, the row number
-    /// and the row.
+    /// Returns at most `most` changes after change number `after`, in the order of their numbers. Each item
+    /// holds the change number, the row number and the row.
     pub fn changes(
         connection: &Connection,
         after: i64,
@@ -48,7 +48,8 @@ mod since {
             UNION ALL SELECT seq, seq, 1 FROM rounds WHERE seq > ?1
             UNION ALL SELECT seq, seq, 2 FROM events WHERE seq > ?1
             ORDER BY 1 LIMIT ?2";
-        // One read transaction: all rows are of the same state, even if another connection writes meanwhile.
+        // Reads all rows in one transaction, so that they belong to the same state even if another connection
+        // writes meanwhile.
         let moment = connection.unchecked_transaction()?;
         let mut statement = moment.prepare_cached(sql)?;
         let numbers = statement.query_map(params![after, most as i64], |row| {

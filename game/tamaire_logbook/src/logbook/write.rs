@@ -31,8 +31,8 @@ pub fn write(connection: &mut Connection, entries: &[Entry]) -> rusqlite::Result
     transaction.commit()
 }
 
-/// Inserts a visit. If an entry for a round or the end of the visit came first, the row exists with an empty
-/// language, and the missing values are filled in. Returns whether the row changed.
+/// Inserts a visit. If an entry for a round or for the end of the visit has created its row with an empty
+/// language, fills in the missing values instead. Returns whether the row changed.
 fn begin_visit(connection: &Connection, change: i64, visit: &Visit) -> rusqlite::Result<bool> {
     let sql = "
         INSERT INTO visits VALUES (:change, :change, :id, :stand, :began, :began_offset, :ended, :ended_offset, :language)
@@ -76,8 +76,8 @@ fn end_visit(
     Ok(changed > 0)
 }
 
-/// Inserts a round. If its visit is missing, because its entry was dropped while the disk was full, the visit
-/// is created without a language and takes a change number too.
+/// Inserts a round. Creates its visit without a language if the entry of the visit was dropped while the disk
+/// was full. The created visit takes a change number, too.
 fn add_round(connection: &Connection, changes: &mut i64, round: &Round) -> rusqlite::Result<bool> {
     let sql = "INSERT INTO visits VALUES (?1, ?1, ?2, ?3, ?4, ?5, NULL, NULL, '') ON CONFLICT (id) DO NOTHING";
     let brought = connection.prepare_cached(sql)?.execute(params![

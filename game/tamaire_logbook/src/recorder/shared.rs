@@ -26,9 +26,9 @@ pub struct Health {
     pub set_aside: Option<SetAside>,
 }
 
-/// Limits of the waiting entries: number, and size in memory [bytes]. They allow for weeks of visits, and any
-/// machine that runs the game has enough memory for them.
+/// Maximum number of entries that wait to be written, enough for weeks of visits.
 const MOST_WAITING: usize = 1 << 16;
+/// Maximum memory of the entries that wait to be written [bytes].
 const MOST_BYTES: usize = 1 << 26;
 /// Maximum number of entries written in one transaction.
 const BATCH: usize = 256;
@@ -160,7 +160,7 @@ impl SharedState {
         batch
     }
 
-    /// Ends a batch: its entries were written, except for `dropped` ones.
+    /// Ends a batch, of which all entries except `dropped` were written.
     pub fn finish_batch(&self, dropped: u64) {
         let mut state = self.state();
         state.in_progress = 0;

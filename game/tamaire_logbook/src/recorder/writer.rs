@@ -23,8 +23,8 @@ const REST: Duration = Duration::from_secs(3);
 const LAST_REST: Duration = Duration::from_millis(100);
 /// Interval between two searches for old rows.
 const SWEEP: Duration = Duration::from_secs(3600);
-/// Maximum time span of the rows deleted after one search [days]. It limits the loss if the clock is years
-/// ahead.
+/// Maximum time span of the rows deleted after one search [days]. The limit reduces the loss if the clock is
+/// years ahead.
 const SWEPT_DAYS: i64 = 7;
 /// Length of a day [ms].
 const DAY: i64 = 86_400_000;
@@ -92,7 +92,8 @@ impl Writer {
     fn attempt(&mut self) {
         let result = self.work();
         if let Err(error) = &result {
-            // The file is opened and checked again at the next attempt.
+            // Closes the file after an error of another kind. The next attempt opens and checks the file
+            // again.
             if !matches!(error, Error::Locked(_) | Error::Full(_)) {
                 self.book = None;
             }
@@ -139,8 +140,8 @@ impl Writer {
         match self.options.server.as_ref().map(Server::name) {
             None => book.set_server(None)?,
             Some(Ok(name)) => book.set_server(Some(&name))?,
-            // The address cannot be parsed. Rows that the last server has not received are kept, because the
-            // address may mean that server.
+            // An address that cannot be parsed may belong to the previous server. Rows that the previous
+            // server has not received are therefore kept.
             Some(Err(_)) => {}
         }
         self.book = Some(book);
@@ -200,7 +201,7 @@ impl Writer {
         Ok(())
     }
 
-    /// Deletes rows that are too old, a few days of them at a time.
+    /// Deletes rows that are older than the limit, a few days of rows at a time.
     fn delete_old(&mut self) -> Result<(), Error> {
         let now = Instant::now();
         let (Some(book), Some(days)) = (&mut self.book, self.options.keep_days) else {

@@ -253,7 +253,7 @@ impl Inserts {
     }
 }
 
-/// Returns the SQL that inserts a row, or updates the row with its id.
+/// Returns the SQL that inserts a row, or updates the existing row with the same id.
 fn upsert(table: &str, columns: &str) -> String {
     let columns: Vec<&str> = columns.split_whitespace().collect();
     let places: Vec<String> = (1..=columns.len() + 1)

@@ -253,7 +253,7 @@ fn every_column_arrives(server: &Postgres) {
         .unwrap();
     assert_eq!(row.get::<_, String>("kind"), "weather");
     assert_eq!(row.get::<_, String>("text"), odd.text.replace('\0', ""));
-    // The end of the visit, recorded later and with the clock set back.
+    // Records the end of the visit after all its rows, with the clock set back by a day.
     let at = MORNING.after(-DAY);
     let (id, language) = (visit.id, String::new());
     recorder.record(Entry::VisitEnded { id, at, language });

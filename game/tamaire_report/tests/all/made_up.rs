@@ -29,7 +29,7 @@ pub fn write(path: &Path, rows: &Rows) {
 pub fn rows(seed: u64, visits: usize) -> Rows {
     let mut random = Rng::with_seed(seed);
     let mut rows = Rows::default();
-    // 2026-10-23 20:00 UTC.
+    // 2026-10-23 20:00 UTC [ms since 1970].
     let first = 1_792_785_600_000;
     for _ in 0..visits {
         let is_japan = random.bool();

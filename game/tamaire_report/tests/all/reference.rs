@@ -327,8 +327,8 @@ fn compare_with_stand(figures: &Figures, file: &Path) {
     assert!(off.is_none_or(|off| off < 0.01), "{median:?}");
 }
 
-/// Distributes the rows to three files: some rows are in two or three files, and rounds of a visit are in
-/// different ones.
+/// Distributes the rows to three files. Some rows are in several files, and the rounds of a visit may be in
+/// different files.
 fn shared_out(rows: &Rows, seed: u64) -> Vec<Rows> {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut files = vec![Rows::default(); 3];

@@ -19,7 +19,8 @@ const RERUN: Options = Options {
     rerun: true,
 };
 
-/// Lets a bot play a round, and returns its row. The id, the visit and the time are those of `of`.
+/// Lets a bot play a round, and returns its row. The id, the visit and the time of the row are copied from
+/// `of`.
 fn played(of: &Round, level: &str, kind: BotKind, ticks: usize, seed: u64) -> Round {
     let level = Arc::new(Level::open(level).unwrap());
     let mut round = AnyRound::new(level.clone());
@@ -185,8 +186,8 @@ fn rounds_that_differ_from_their_replays_are_listed_and_not_counted() {
     }
 }
 
-/// Returns the round's replay with the hashes of a different course. The replay is valid but diverges when
-/// run.
+/// Returns the replay of `round` with the hashes of a round with other input. This replay can be decoded but
+/// diverges when run.
 fn tampered(round: &Round) -> String {
     let replay = Replay::of_fragment(&round.replay).unwrap();
     let level = Arc::new(replay.level().unwrap());
@@ -225,7 +226,8 @@ fn interrupted_rerun_continues_from_the_stored_results() {
     let path = out.join("reruns.jsonl");
     let text = fs::read_to_string(&path).unwrap();
     assert_eq!(text.lines().count(), 3);
-    // State after a kill while the third line was written, preceded by a line with other rules.
+    // The file as a killed program leaves it, with an incomplete last line. Before that come a line with
+    // other rules and a line that is not JSON.
     let lines: Vec<&str> = text.lines().collect();
     let old = lines[2].replace(
         &format!("\"rules\":{}", tamaire_play::replay::VERSION),

@@ -17,7 +17,7 @@ impl Default for Yielder {
 }
 
 impl Yielder {
-    /// Waits for the next frame if the work has lasted longer than `LONGEST` since the last one.
+    /// Waits for the next frame if the work has lasted longer than `LONGEST` since the previous wait.
     pub async fn yield_now(&mut self) {
         if self.0.elapsed() > LONGEST {
             // The promise is never rejected.

@@ -68,10 +68,12 @@ extern "C" {
     /// Sound output. It outlives the game, so that sound continues after a restart.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn speaker(this: &Host) -> Speaker;
-    /// Resolves in the next frame; without delay if the page is hidden and has no frames.
+    /// Returns a promise that resolves in the next frame, or at once if the page is hidden and gets no
+    /// frames.
     #[wasm_bindgen(method)]
     pub(crate) fn breathe(this: &Host) -> js_sys::Promise;
-    /// Requests the Japanese font. It arrives through [`Host::take_letters`], unless it cannot be fetched.
+    /// Requests the Japanese font. The font arrives through [`Host::take_letters`], unless it cannot be
+    /// fetched.
     #[wasm_bindgen(method, js_name = wantLetters)]
     pub(crate) fn want_letters(this: &Host);
     #[wasm_bindgen(method, js_name = takeLetters)]

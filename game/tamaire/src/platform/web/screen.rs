@@ -1,4 +1,4 @@
-//! Screen functions that only the page provides.
+//! Screen functions in a browser. The page provides them.
 
 use super::host;
 use crate::words::Language;
@@ -14,12 +14,13 @@ pub fn restart() {
     host().lost();
 }
 
-/// Whether the page is full screen. Browsers have keys and gestures that change it.
+/// Whether the page is full screen. Players can change this with keys and gestures of the browser.
 pub fn full_screen_of_page() -> Option<bool> {
     Some(host().is_full())
 }
 
-/// Returns the address of the page without its fragment. Links are this address with a fragment.
+/// Returns the address of the page without its fragment. A link to a round or level is this address with a
+/// fragment.
 pub fn address_of_page() -> String {
     host().address()
 }
@@ -29,7 +30,7 @@ pub fn set_language(context: &egui::Context, language: Language, has_own_levels:
     let host = host();
     let is_japanese = language == Language::Japanese;
     host.set_spoken(if is_japanese { "ja" } else { "en" });
-    // Names given by players may be in any script.
+    // Names given by players may be in any script, so they need the Japanese font, too.
     if is_japanese || has_own_levels {
         host.want_letters();
     }

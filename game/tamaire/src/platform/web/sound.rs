@@ -13,7 +13,7 @@ pub struct Sound {
 }
 
 impl Sound {
-    /// Opens the default device of the browser, as soon as the browser allows.
+    /// Opens the default output device as soon as the browser allows sound.
     pub fn open() -> Self {
         Self {
             speaker: Some(host().speaker()),

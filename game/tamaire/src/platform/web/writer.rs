@@ -35,7 +35,7 @@ impl<T: 'static> Writer<T> {
         }
     }
 
-    /// Adds a job. `told` converts what it returns to a result of the writer.
+    /// Adds a job. `told` converts the job's return value to a result of the writer.
     pub fn write<V: 'static>(
         &mut self,
         job: impl FnOnce() -> io::Result<V> + 'static,
@@ -75,8 +75,8 @@ impl<T: 'static> Writer<T> {
         results
     }
 
-    /// Starts all waiting jobs at once, because the page may not come back. A browser does not allow waiting
-    /// for their end.
+    /// Starts all waiting jobs at once, because a hidden page may be closed. Does not wait for their end,
+    /// because browsers do not allow waiting. Returns the results of finished jobs.
     pub fn finish(&mut self) -> Vec<T> {
         for job in self.waiting.drain(..) {
             begin(&job);
