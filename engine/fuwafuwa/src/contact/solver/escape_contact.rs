@@ -31,11 +31,13 @@ impl EscapeContact {
     ) -> Option<Self> {
         let [a, b] = [captive.sphere, captive.exit];
         let both = [&spheres.list[a], &spheres.list[b]];
-        let out = both[1].outward::<D>(&bodies.at(both[1].body).positions());
-        let ahead = (both[0].radius + both[1].radius) / out.length();
+        // Not 0, because it divides.
+        let length_of = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
+        let out = both[1].outward::<D>(bodies.at(both[1].body).positions());
+        let ahead = (both[0].radius + both[1].radius) / length_of(out);
         let goal = spheres.centres[b] + out * ahead;
         let way = goal - spheres.centres[a];
-        let speed = PUSH_OUT_SPEED.min(way.length() / duration);
+        let speed = PUSH_OUT_SPEED.min(length_of(way) / duration);
         let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
         let inverse_mass = first + second;
         // Skips an embedded sphere that is too fast, because it would accelerate its host piece. The
@@ -47,7 +49,7 @@ impl EscapeContact {
         (is_way && inverse_mass > 0.0).then(|| Self {
             grips: both.map(|sphere| motion.grip::<D>(sphere)),
             inertia: 1.0 / inverse_mass,
-            velocity: way * (speed / way.length()),
+            velocity: way * (speed / length_of(way)),
         })
     }
 
