@@ -32,7 +32,7 @@ use crate::soft_body::{SoftBodies, SoftBody};
 use crate::world::sleep::{fall_asleep, fall_asleep_rigid, wake};
 pub use body_handle::{BodyHandle, Removable};
 pub use config::{DEFAULT_SUBSTEPS, DEFAULT_TICK, MAX_TICK, MIN_SUBSTEPS, MIN_TICK, WorldConfig};
-pub use hooks::{Hooks, Substep, field_around};
+pub use hooks::{AfterSubstep, Hooks, Substep, field_around};
 pub use removal::{PieceSize, Removed};
 #[cfg(feature = "serde")]
 pub(crate) use stored_world::StoredWorld;

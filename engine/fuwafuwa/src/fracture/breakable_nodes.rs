@@ -277,7 +277,7 @@ mod tests {
             })
             .collect()
         };
-        assert_eq!(listed(&body.breakable_nodes()), listed(&fresh));
+        assert_eq!(listed(body.breakable_nodes()), listed(&fresh));
         assert!(fresh.among(0..usize::MAX).any(|(_, node)| node.crumbs != 0));
     }
 

@@ -12,7 +12,7 @@ pub struct Hooks<'a, D: Dim> {
     /// acts on soft bodies and dynamic rigid bodies that are awake. Non-finite values are ignored.
     pub field: Option<&'a dyn Fn(D::Vector) -> D::Vector>,
     /// Called at the end of each substep.
-    pub after_substep: Option<&'a mut dyn FnMut(&Substep<'_, D>)>,
+    pub after_substep: Option<&'a mut AfterSubstep<'a, D>>,
 }
 
 impl<D: Dim> Default for Hooks<'_, D> {
@@ -23,6 +23,9 @@ impl<D: Dim> Default for Hooks<'_, D> {
         }
     }
 }
+
+/// Callback after a substep, see [`Hooks::after_substep`].
+pub type AfterSubstep<'a, D> = dyn FnMut(&Substep<'_, D>) + 'a;
 
 /// State of the world after a substep.
 pub struct Substep<'a, D: Dim> {
