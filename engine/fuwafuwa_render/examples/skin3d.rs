@@ -11,9 +11,10 @@ use std::f32::consts::TAU;
 use std::time::Instant;
 
 const TICKS: u64 = 150;
-/// Repetitions per tick. The fastest one counts, because other processes share the machine.
+/// Number of measurements per tick. Only the shortest time is reported, because other processes can slow down
+/// a measurement.
 const GOES: usize = 3;
-/// Measured parts besides the skin alone.
+/// Names of the pictures that are measured besides the skin alone.
 const PARTS: [&str; 4] = [
     "skin in a room",
     "skin and a face",
@@ -100,7 +101,8 @@ fn first_body(world: &World<Dim3>) -> &SoftBody<Dim3> {
     first.expect("the scene has a body").1
 }
 
-/// Returns a sticker with as many corners as a face in the game.
+/// Returns a sticker (coloured patches on the skin) with as many corners as the painted eyes and mouth of a
+/// body in the game.
 fn face(world: &World<Dim3>) -> Sticker {
     let body = first_body(world);
     let anchor = anchor(body);

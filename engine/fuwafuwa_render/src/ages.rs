@@ -16,8 +16,8 @@ pub struct Ages {
 }
 
 impl Ages {
-    /// Compares a world with its state in the previous call, `duration` [s] ago. In the first call every
-    /// element counts as old.
+    /// Compares a world with its state in the previous call, `duration` [s] ago. The first call gives every
+    /// element a high age, as if it had not been remodelled recently.
     pub fn update<D: Dim>(&mut self, world: &World<D>, duration: f32) {
         let known = std::mem::take(&mut self.bodies);
         let mut forms_before = std::mem::take(&mut self.forms);

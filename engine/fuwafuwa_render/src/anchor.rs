@@ -1,4 +1,4 @@
-//! A coordinate frame that follows a body, for example to paint a face in it.
+//! A coordinate frame that follows a body, for example to paint eyes and a mouth on the body.
 
 use fuwafuwa::{Dim, DimVector, PieceId, SoftBody};
 use glam::{Mat3, Vec3};
@@ -82,8 +82,8 @@ pub fn anchor_at<D: Dim>(
     Some((moved, columns(turn)))
 }
 
-/// Returns the mean current position, the mean rest position and the rotation of nodes. Each state is
-/// (current position, rest position, mass).
+/// Returns the mean current position, the mean rest position and the rotation of nodes. Each item of the
+/// iterator is one node: current position, rest position, mass.
 fn frame<D: Dim, I: Iterator<Item = (Vec3, Vec3, f32)>>(
     states: impl Fn() -> I,
 ) -> (Vec3, Vec3, Option<Mat3>) {
@@ -125,7 +125,8 @@ fn turn_of<D: Dim>(mut turn: Mat3) -> Option<Mat3> {
             return None;
         }
         let inverse = turn.inverse().transpose();
-        // Scaling both to the same norm makes the iteration converge faster.
+        // Scales the matrix and its inverse transpose to the same norm, so that the iteration converges
+        // faster.
         let share = (size(inverse) / large).sqrt();
         turn = 0.5 * (share * turn + inverse / share);
     }
@@ -155,7 +156,8 @@ mod tests {
         let (sin, cos) = 2.5f32.sin_cos();
         for id in ids {
             let at = body.node_state(id).0;
-            // Squashed, rotated and translated; the part that was cut off is moved far away.
+            // The test squashes, rotates and translates the body, and moves the piece that was cut off far
+            // away.
             let squashed = at * Vec2::new(1.0, 0.6);
             let place = Vec2::new(cos, sin).rotate(squashed) + Vec2::new(3.0, -7.0);
             let largest = body.pieces().of_node(id) == body.pieces().of_node(middle(body));
@@ -182,7 +184,8 @@ mod tests {
         let body = world.soft_body_mut(soft).unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {
-            // Half as high, then rotated so that x maps to y, y to z and z to x.
+            // The test halves the body's height, then rotates the body so that x maps to y, y to z and z to
+            // x.
             let [x, y, z] = body.node_state(id).0.to_array();
             let place = Vec3::new(z, x, 0.5 * y);
             body.set_node_state(id, place, Vec3::ZERO).unwrap();

@@ -16,11 +16,11 @@ const FLASH: f32 = 0.4;
 #[repr(C)]
 #[derive(Copy, Clone, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ElementVertex {
-    /// Position before the line offset [m].
+    /// Position [m], before the shader adds `across`.
     pub at: Vec2,
     /// Offset that gives a line its thickness [px].
     pub across: Vec2,
-    /// Distance from the line's centre and half the line width [px].
+    /// Distance of the vertex from the line's centre, then half the line width [px].
     pub line: [f32; 2],
     /// Colour and opacity.
     pub colour: [u8; 4],
@@ -33,9 +33,9 @@ pub struct ElementMesh {
     pub vertices: Vec<ElementVertex>,
     /// Vertex indices, three per triangle.
     pub indices: Vec<u32>,
-    /// Faces of an element with children, indexed by its child mask.
+    /// Faces of an element of level 1 or higher, indexed by the mask of the children that it fills.
     faces: [Vec<ElementFace>; 16],
-    /// Faces of an element without children.
+    /// Faces of an element of level 0, which is a single voxel.
     whole: Vec<ElementFace>,
 }
 
@@ -118,7 +118,7 @@ impl ElementMesh {
         }
     }
 
-    /// Adds a line with square ends, or a square if both ends are equal.
+    /// Adds a line with square ends; adds a square if `from` equals `to`.
     fn add_line(&mut self, from: Vec2, to: Vec2, half: f32, colour: [u8; 4]) {
         let along = (to - from).try_normalize().unwrap_or(Vec2::X);
         let first = self.vertices.len() as u32;

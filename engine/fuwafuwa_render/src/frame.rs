@@ -18,8 +18,8 @@ pub struct Frame<'a, C: DimCamera = Camera> {
     pub basket: Option<Basket<C::Dim>>,
     /// Particles such as crumbs, dust and sparks.
     pub particles: &'a [Particle],
-    /// Marks on the skins of 3D bodies. In 2D, the caller paints marks after
-    /// [`crate::Renderer::paint_bodies`].
+    /// Stickers: coloured patches on the skins of 3D bodies, for example eyes and a mouth. In 2D, the caller
+    /// paints them after [`crate::Renderer::paint_bodies`].
     pub stickers: &'a [Sticker],
     /// Second world whose bodies and hands are drawn transparently, such as a replay to race against (3D
     /// only).
@@ -103,7 +103,7 @@ pub enum Look<'a> {
         /// Quantity shown by the colour.
         colour: ElementColour,
         /// Time since each element was remodelled [s], by body and element id, as [`crate::Ages`] computes
-        /// it. Recently remodelled elements flash. Missing entries count as old.
+        /// it. Recently remodelled elements flash. Elements without an entry do not flash.
         ages: &'a [Vec<f32>],
         /// Whether nodes are drawn as dots (2D only).
         nodes: bool,
@@ -139,7 +139,7 @@ pub struct Particle {
     pub colour: [f32; 4],
 }
 
-/// Coloured patch of a sticker.
+/// Coloured patch of a [`Sticker`], for example one eye.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
     /// Corners (right, up), counterclockwise, in mark units: lengths of the sticker's axes. The patch
@@ -153,7 +153,8 @@ pub struct Mark {
     pub lift: f32,
 }
 
-/// Marks on the skin of a piece, each painted over the previous ones, for example a face.
+/// Coloured patches (marks) on the skin of a piece, for example eyes and a mouth. Each mark is painted over
+/// the previous ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sticker {
     /// Index of the body in the world.
@@ -166,7 +167,7 @@ pub struct Sticker {
     /// Axes to the right, up and out of the skin. The length of each axis [m] is one mark unit in its
     /// direction.
     pub axes: [Vec3; 3],
-    /// Marks, bottom first.
+    /// Coloured patches of the sticker, bottom first.
     pub marks: Vec<Mark>,
 }
 

@@ -29,7 +29,8 @@ pub struct Geometry {
 /// Index ranges of a body in [`SkinMesh::fans`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyParts {
-    /// Fans that wind around the inside.
+    /// Triangle fans of the outlines. The fans wind a non-zero number of times around each point inside the
+    /// body.
     pub fan: Range<u32>,
     /// Quads that colour the inside: first the whole body, then the regions of other materials.
     pub cover: Range<u32>,

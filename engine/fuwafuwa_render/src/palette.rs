@@ -23,15 +23,15 @@ pub struct Palette {
     pub bar: Colour,
     /// Glow of the basket.
     pub basket: Colour,
-    /// Bodies by material number, starting at number 1. The list repeats after its end.
+    /// Colours of bodies by material number, starting at number 1. The list repeats after its end.
     pub materials: Vec<Colour>,
     /// Inside of a body. Torn surfaces mix this colour with the colour of the body.
     pub fresh: Colour,
-    /// Hands by player. The list repeats after its end.
+    /// Colours of hands by player. The list repeats after its end.
     pub hands: Vec<Colour>,
-    /// Elements by level, starting at 0. The last colour is used for all higher levels.
+    /// Colours of elements by level, starting at 0. The last colour is used for all higher levels.
     pub levels: Vec<Colour>,
-    /// Elements by strain: none, medium, high.
+    /// Colours of elements by strain: none, medium, high.
     pub strains: [Colour; 3],
     /// Lines between elements.
     pub ink: Colour,

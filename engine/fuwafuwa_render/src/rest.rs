@@ -11,7 +11,8 @@ use glam::Vec2;
 /// Steps along the four sides of a voxel, counterclockwise starting with the one to the right.
 const STEPS: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
 /// Standard deviation of the blur [voxel sides], as a multiple of the square root of the number of sides of a
-/// ring. The longest stair steps of a voxelised disc grow with the same square root.
+/// ring (closed line of exposed voxel sides). The longest stair steps of a voxelised disc grow with the same
+/// square root.
 const REACH: f32 = 0.5;
 /// Minimum number of sides of a ring (closed line of exposed voxel sides) that is smoothed. Smaller rings
 /// have no staircase, only corners.
@@ -111,7 +112,7 @@ fn start_of([x, y, _]: [i32; 3], direction: usize) -> Vec2 {
     Vec2::new((x + dx) as f32, (y + dy) as f32)
 }
 
-/// Returns the next side of a ring. Voxels that touch only in a corner are not connected.
+/// Returns the next exposed side along the surface. Voxels that touch only in a corner are not connected.
 fn next_side(grid: &VoxelGrid<Dim2>, voxel: [i32; 3], direction: usize) -> ([i32; 3], usize) {
     let ahead = beside(voxel, direction);
     let right = beside(ahead, (direction + 3) % 4);

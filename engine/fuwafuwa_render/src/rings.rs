@@ -62,7 +62,7 @@ struct Side {
     /// Index of the following side; `NONE` once the side was drawn.
     next: u32,
     start: Vec2,
-    /// Smoothing offsets of both ends [m].
+    /// Smoothing offsets of the start and of the end of the side [m].
     moved: [Vec2; 2],
     is_fresh: bool,
     strain: f32,
@@ -73,14 +73,15 @@ struct Side {
 #[derive(Copy, Clone, Debug)]
 struct Control {
     at: Vec2,
-    /// Freshness of the sides before and after the corner.
+    /// Freshness of the sides before and after the corner: 1 on torn surfaces, 0 on the original surface.
     fresh: [f32; 2],
     strain: f32,
     grain: f32,
 }
 
 const NONE: u32 = u32::MAX;
-/// Rounds of smoothing: for points of the original surface, and for torn points.
+/// Number of smoothing rounds for points of the original surface; `TORN_ROUNDS` is the number for torn
+/// points.
 const SURFACE_ROUNDS: usize = 4;
 const TORN_ROUNDS: usize = 1;
 
@@ -131,8 +132,8 @@ impl Outlines {
         }
     }
 
-    /// Collects the control polygon of the ring that contains a side. It is empty if the ring was drawn
-    /// before.
+    /// Collects the control polygon of the closed outline that contains a side. The polygon is empty if that
+    /// outline was drawn before.
     fn gather_ring(&mut self, first: usize) {
         self.ring.clear();
         let mut at = first;
@@ -148,9 +149,9 @@ impl Outlines {
         }
     }
 
-    /// Moves points half-way to the midpoint of their neighbours. Torn points move once, because they should
-    /// look rough. Points of the original surface move more often, because contacts deform the unsmoothed
-    /// voxels below.
+    /// Moves points half-way to the midpoint of their neighbours. Torn points move in one round only, because
+    /// torn surfaces should look rough. Points of the original surface move in several rounds, because
+    /// contacts dent the voxels below, which are not smoothed.
     fn smooth_corners(&mut self) {
         let count = self.ring.len();
         if count < SMALL {

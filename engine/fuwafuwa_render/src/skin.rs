@@ -29,10 +29,10 @@ pub struct SkinVertex {
 pub struct SkinMesh {
     /// Vertices.
     pub vertices: Vec<SkinVertex>,
-    /// Triangle fans around the curves. Non-zero winding means inside. The quads that colour a body follow
-    /// its fans.
+    /// Triangle fans of the outlines. Pixels with a non-zero winding number are inside. The fans of each body
+    /// are followed by the quads that colour it.
     pub fans: Vec<u32>,
-    /// Bands along the inner side of the curves.
+    /// Bands along the inner side of the outlines.
     pub bands: Vec<u32>,
 }
 
@@ -44,7 +44,7 @@ impl SkinMesh {
         self.bands.clear();
     }
 
-    /// Adds fans and bands of a body's curves. `voxel` is the voxel size of the body [m].
+    /// Adds the triangle fans and bands of a body's outlines. `voxel` is the voxel size of the body [m].
     pub fn add(&mut self, rings: &Outlines, voxel: f32) {
         for span in &rings.spans {
             let points = &rings.points[span.start..span.end];

@@ -108,7 +108,8 @@ fn disc_is_warm_on_a_cool_floor_with_a_smooth_edge() {
     for degree in 0..360 {
         let angle = (degree as f32).to_radians();
         let half = 0.5 * (warmth(angle, round + 2.0 * voxel) + warmth(angle, round - voxel));
-        // Searches inwards for the radius with half the warmth.
+        // Searches inwards for the radius at which the colour is half-way between the warm body and the cool
+        // floor.
         let steps = (0..400).map(|k| round + (2.0 - 0.01 * k as f32) * voxel);
         let edge = steps
             .into_iter()
@@ -278,7 +279,8 @@ fn empty_worlds_and_skinless_bodies_render_in_every_size() {
         };
         let bare = image(&floating(), Look::Skin);
         assert_eq!(bare.len(), 4 * (size[0] * size[1]) as usize);
-        // The coarse body has elements, but no skin.
+        // A body drawn as elements has no skin in the picture, so the skin view equals the picture without
+        // it.
         assert_eq!(bare, image(&coarse, Look::Skin));
         let middle = 4 * (size[1] / 2 * size[0] + size[0] / 2) as usize;
         let shown = &image(&coarse, elements)[middle..middle + 3];

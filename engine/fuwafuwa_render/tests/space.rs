@@ -103,8 +103,8 @@ fn ball_is_warm_on_a_cool_floor_with_a_round_edge_and_a_shadow() {
         "{below:?} {floor:?}"
     );
 
-    // The edge is the radius where warmth ends. It deviates from a circle by less than a voxel staircase
-    // would.
+    // Radius at which the warm colour of the ball ends, in each direction. It deviates from a circle by less
+    // than a voxel staircase would.
     let edges: Vec<f32> = (0..180)
         .map(|k| {
             let (sin, cos) = (k as f32 / 180.0 * std::f32::consts::TAU).sin_cos();
@@ -192,7 +192,7 @@ fn cut_element_view_shows_the_colour_of_levels() {
     for view in body.element_views() {
         let width = body.grid().voxel_size() * f32::from(1u8 << view.level);
         let middle = view.slots[13];
-        // Only elements with their front face in the cut.
+        // Skips elements whose front face is not in the cut plane.
         if view.level < 2 || view.children != 255 || (middle.z + 0.5 * width - 0.5).abs() > 1e-3 {
             continue;
         }

@@ -22,8 +22,8 @@ use wgpu::*;
 /// Standard deviation of the wide blur, which makes a body look thick, as a multiple of the radius of the
 /// largest body. Smaller values make balls look flat; larger values make all pieces look flat.
 const THICKNESS: f32 = 0.30;
-/// Standard deviation of the narrow blur, which rounds the edges of every piece, as a multiple of the same
-/// radius.
+/// Standard deviation of the narrow blur, which rounds the edges of every piece, as a multiple of the radius
+/// of the largest body.
 const EDGE: f32 = 0.038;
 
 /// Draws 2D worlds.

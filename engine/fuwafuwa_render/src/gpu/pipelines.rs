@@ -8,7 +8,8 @@ use crate::rigid::{DotInstance, RigidInstance};
 use crate::skin::SkinVertex;
 use wgpu::*;
 
-/// Format of the body images: colour with coverage, and relief.
+/// Format of the two images that bodies are drawn into: colour with coverage, and relief (thickness,
+/// freshness of torn surfaces, strain).
 pub const SKIN_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 /// Format of the blurred body images. With eight bits per channel, slopes would show steps.
 pub const SOFT_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
@@ -21,13 +22,13 @@ pub struct Pipelines {
     pub blur_layout: BindGroupLayout,
     pub shape_layout: BindGroupLayout,
     pub body_layout: BindGroupLayout,
-    /// Counts the windings of the curves in the stencil.
+    /// Counts in the stencil how often the outlines wind around each pixel.
     pub fan: RenderPipeline,
     /// Colours pixels with a non-zero winding number.
     pub cover: RenderPipeline,
-    /// Resets the stencil.
+    /// Resets the stencil to 0.
     pub wipe: RenderPipeline,
-    /// Changes the relief of coloured pixels along the edges.
+    /// Blends the bands along the outlines into the body images, only where a body covers the pixel.
     pub band: RenderPipeline,
     pub element: RenderPipeline,
     pub shrink: RenderPipeline,

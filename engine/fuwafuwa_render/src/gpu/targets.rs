@@ -9,7 +9,8 @@ use wgpu::*;
 /// Maximum number of pixels of an intermediate image. In larger windows, bodies are drawn at a lower
 /// resolution and enlarged.
 const MOST_PIXELS: f32 = 2.6e6;
-/// Size divisors of the images for the narrow and the wide blur.
+/// Divisor from the size of the skin images to that of the images with the narrow blur; `WIDE` is that of the
+/// wide blur.
 pub const NARROW: u32 = 4;
 const WIDE: u32 = 16;
 /// Reach of a blur [standard deviations].

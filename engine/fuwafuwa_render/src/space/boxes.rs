@@ -15,9 +15,9 @@ use glam::Vec3;
 
 /// Distance between a box and the faces of its element [voxels], so that neighbours can be told apart.
 const GAP: f32 = 0.03;
-/// Depth of an element's centre behind the cut from which the cut removes none of its neighbours [element
-/// widths]. The faces that neighbours cover need not be drawn there. A neighbour towards the cut is at most
-/// twice as wide, so its centre is at most 1.5 widths closer.
+/// Minimum depth of an element's centre behind the cut [element widths] at which none of its neighbours is
+/// cut away. Faces covered by neighbours are then left out. A neighbour towards the cut is at most twice as
+/// wide, so its centre is at most 1.5 widths closer to the cut.
 const DEEP: f32 = 1.51;
 
 /// Vertex of the element view.
@@ -26,8 +26,8 @@ const DEEP: f32 = 1.51;
 pub struct BoxVertex {
     /// Position [m].
     pub at: Vec3,
-    /// Distance from each side of the quad: 0 on the side, 255 on the opposite side. Always 255 for a side
-    /// that is no edge of the element, so that no line appears there.
+    /// Distance of the vertex from each side of the quad: 0 on that side, 255 on the opposite side. Always
+    /// 255 for a side that is no edge of the element, so that no line is drawn there.
     pub sides: [u8; 4],
     /// Red, green, blue; the last component is unused.
     pub colour: [u8; 4],
@@ -98,7 +98,8 @@ impl Boxes {
             let (centre, share) = (view.slots[13], GAP / width);
             let shrunk = view.slots.map(|at| at.lerp(centre, share));
             for (number, face) in forms[place].2.iter().enumerate() {
-                // Only elements of level 0 have bare faces, and their face numbers are those of a voxel.
+                // Only elements of level 0 have bare faces. Such an element is one voxel, so bit `number` of
+                // `bare` belongs to its face `number`.
                 if is_at_cut || bare >> number & 1 == 1 {
                     self.add_quad(&shrunk, face, shown);
                 }
@@ -202,7 +203,7 @@ mod tests {
             let front = vertices.map(|vertex| vertex.at.dot(direction));
             (volume, front.fold(f32::MIN, f32::max))
         };
-        // Gaps make boxes smaller.
+        // The gaps between boxes make the drawn volume smaller than half of the body.
         let (half, front) = volume(&world, 0.5);
         assert!(
             (0.44..0.5).contains(&half) && front < 1.01,

@@ -23,7 +23,7 @@ const ALL_FACES: u8 = 0b11_1111;
 /// Bare faces of a body with their points, vertices and triangles.
 #[derive(Clone, Debug, Default)]
 pub struct Faces {
-    /// Last known form of each element.
+    /// Properties of each element at the last update that determine its faces.
     forms: IndexVec<ElementId, Form>,
     /// Index of the point of each node, or `NONE`.
     of_node: IndexVec<NodeId, u32>,
@@ -46,11 +46,12 @@ pub struct Faces {
 /// Bare face of a voxel.
 #[derive(Copy, Clone, Debug)]
 pub struct Face {
-    /// Indices of its points, counterclockwise seen from outside.
+    /// Indices of the face's points, counterclockwise seen from outside.
     pub points: [u32; 4],
-    /// Indices of its vertices.
+    /// Indices of the face's vertices.
     pub vertices: [u32; 4],
-    /// For each corner: the next corner of another face at the same point, as 4 · face + corner, or `NONE`.
+    /// For each corner of the face: the next entry in the list of all face corners at that point, as 4 · face
+    /// + corner, or `NONE` at the end.
     next: [u32; 4],
     element: ElementId,
     /// Number of the face within the element: 2 · axis + side.
@@ -61,21 +62,21 @@ pub struct Face {
 /// Node on the surface.
 #[derive(Copy, Clone, Debug)]
 pub struct SkinPoint {
-    /// Its node, or [`NO_NODE`].
+    /// Node at which the point lies, or [`NO_NODE`].
     pub node: NodeId,
-    /// Nodes of the adjacent voxel whose deformation carries the offset.
+    /// Nodes of the adjacent voxel with whose deformation the smoothing offset moves.
     pub voxel: [NodeId; 8],
     /// Smoothing offset in the frame of the voxel [voxels].
     pub offset: Vec3,
-    /// Neighbour points for smoothing.
+    /// Neighbour points that smoothing averages.
     pub near: [u32; 6],
     /// Number of neighbour points.
     pub near_count: u8,
     /// Kind of surface at the point.
     pub ground: SurfaceKind,
-    /// First face corner at the point, as 4 · face + corner.
+    /// First entry in the list of all face corners at the point, as 4 · face + corner.
     first: u32,
-    /// Vertices on the original surface and on the torn surface.
+    /// Vertex on the original surface, then vertex on the torn surface.
     vertices: [u32; 2],
     is_dirty: bool,
 }
@@ -94,14 +95,14 @@ pub enum SurfaceKind {
 /// Motion-independent data of a vertex.
 #[derive(Copy, Clone, Debug)]
 pub struct VertexSource {
-    /// Index of its point, or `NONE`.
+    /// Index of the point at which the vertex lies, or `NONE`.
     pub point: u32,
     /// Rest position [voxels].
     pub rest: Vec3,
     /// Red, green, blue of the material; the last component is 255 on torn surfaces.
     pub colour: [u8; 4],
-    /// Red, green, blue of the material beyond the nearest border. The last component is the position across
-    /// the border: 128 on the border, more beyond it.
+    /// Red, green, blue of the material beyond the nearest border between materials. The last component is
+    /// the position across the border: 128 on the border, higher in the material beyond it.
     pub other: [u8; 4],
 }
 
@@ -111,7 +112,7 @@ struct Form {
     bare: u8,
     at: Point,
     nodes: [NodeId; 8],
-    /// Indices of its faces, or `NONE`.
+    /// Indices of the element's faces, or `NONE`.
     faces: [u32; 6],
 }
 
@@ -331,8 +332,8 @@ impl Faces {
             octant = 7 - vertex;
             near[ground].add(face.points[(k + 1) % 4]);
             near[ground].add(face.points[(k + 3) % 4]);
-            // Selects the voxel that carries the offset: one that the offset points into, otherwise the one
-            // it leaves least.
+            // Selects the voxel with whose deformation the smoothing offset moves: a voxel that the offset
+            // points into, otherwise the voxel that the offset leaves least.
             let offset = rest.offset(at, octant);
             let inwards = Vec3::from(corner(vertex).map(|end| 1.0 - 2.0 * end as f32));
             let towards = (inwards * offset).min(Vec3::ZERO).element_sum();

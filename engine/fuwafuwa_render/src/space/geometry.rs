@@ -17,7 +17,8 @@ use std::ops::Range;
 const REACH: f32 = 3.0;
 /// Radius of a crumb [voxel widths]. A ball of this radius has the volume of a voxel.
 const CRUMB: f32 = 0.62;
-/// Radius of the line below a hand [m], and its maximum as a multiple of the camera distance.
+/// Radius of the line drawn from a hand down to the floor [m]. `LINE_SHARE` limits it, as a multiple of the
+/// camera distance.
 const LINE: f32 = 0.004;
 const LINE_SHARE: f32 = 0.002;
 

@@ -34,7 +34,7 @@ impl<T> Pool<T> {
         }
     }
 
-    /// Releases a slot. It contains `nothing` until it is reused.
+    /// Releases a slot and stores `nothing` in it until the slot is reused.
     pub fn remove(&mut self, place: u32, nothing: T) {
         self.all[place as usize] = nothing;
         self.free.push(place);

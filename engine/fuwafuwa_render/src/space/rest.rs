@@ -20,8 +20,8 @@ const MAX_ROUNDS: usize = 200;
 /// Maximum offset of a point [voxels] where the body is thin and where it is thick, so that a protrusion of a
 /// few voxels survives.
 const FARTHEST: [f32; 2] = [0.3, 0.8];
-/// Limits of thin and thick: fraction of solid voxels around a point, within `AROUND` voxels. This fraction
-/// is 0.5 on a flat surface and 0.25 on an edge or a limb three voxels wide.
+/// Fractions of solid voxels around a point, within `AROUND` voxels, at which the body counts as thin and as
+/// thick. This fraction is 0.5 on a flat surface and 0.25 on an edge or a limb three voxels wide.
 const SOLID: [f32; 2] = [0.22, 0.32];
 const AROUND: i32 = 3;
 /// Rounds of mixing material shares between neighbours. More rounds smooth longer stair steps of material
@@ -30,7 +30,8 @@ const TINT_ROUNDS: usize = 12;
 /// Minimum share of a material at a point where all adjacent voxels have this material. At a point without
 /// such voxels, the maximum share is 1 − `MIN_OWN_SHARE`. Both limits keep dots of a few voxels visible.
 const MIN_OWN_SHARE: f32 = 0.52;
-/// Minimum share of the second material. With a smaller share, the point counts as away from the border.
+/// Minimum share of the second most frequent material at a point. With a smaller share, the point is treated
+/// as away from any material border.
 const MIN_SECOND_SHARE: f32 = 0.1;
 /// Weights of the voxels around an inner point, along each axis.
 const AROUND_INSIDE: [f32; 4] = [1.0, 3.0, 3.0, 1.0];
@@ -67,7 +68,7 @@ struct RestPoint {
 pub struct Tint {
     /// Numbers of the two most frequent materials, the lower one first; equal away from a border.
     pub materials: [u8; 2],
-    /// Position across the border: 0.5 on it, towards 0 on the side of the first material.
+    /// Position across the border: 0.5 on the border, towards 0 on the side of the first material.
     pub side: f32,
 }
 
@@ -340,7 +341,7 @@ mod tests {
 
     #[test]
     fn material_border_has_no_staircase() {
-        // The border rises by one voxel in four.
+        // Border between two materials that rises by one voxel every four voxels.
         let half = |[x, y, _]: Point| 1 + u8::from(4 * y > x + 20);
         let grid = VoxelGrid::<Dim3>::from_fn([40, 30, 4], 1.0, half).unwrap();
         let sides = sides(&grid);

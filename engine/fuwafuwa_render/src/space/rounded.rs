@@ -29,7 +29,7 @@ pub struct RoundedVertex {
 pub struct RoundedInstance {
     /// Centre [m].
     pub centre: Vec3,
-    /// Radius of its edges [lengths of `axes`].
+    /// Radius of the rounded edges [lengths of `axes`].
     pub radius: f32,
     /// Axes [m].
     pub axes: Mat3,
@@ -45,7 +45,8 @@ pub struct RoundedInstance {
 pub fn mesh(fine: usize) -> (Vec<RoundedVertex>, Vec<u32>) {
     let (mut vertices, mut indices) = (Vec::new(), Vec::new());
     let side = 2 * (fine + 1);
-    // Parameters from −1 to 1. 0 occurs twice, because octants do not share vertices.
+    // Parameters from −1 to 1 along an edge. The parameter 0 occurs twice, because octants do not share
+    // vertices.
     let along = |k: usize| match k > fine {
         false => (k as f32 / fine as f32 - 1.0, -1.0),
         true => ((k - fine - 1) as f32 / fine as f32, 1.0),
@@ -53,7 +54,7 @@ pub fn mesh(fine: usize) -> (Vec<RoundedVertex>, Vec<u32>) {
     for face in 0..6 {
         let axis = face / 2;
         let end = if face % 2 == 1 { 1.0 } else { -1.0 };
-        // The other two axes, ordered so that triangles turn around the outward normal.
+        // The two axes in the plane of the face, ordered so that triangles turn around the outward normal.
         let (u, v) = match face % 2 {
             1 => ((axis + 1) % 3, (axis + 2) % 3),
             _ => ((axis + 2) % 3, (axis + 1) % 3),

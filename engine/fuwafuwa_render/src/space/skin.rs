@@ -34,8 +34,8 @@ pub struct SkinVertex {
     pub normal: [i16; 4],
     /// Red, green, blue of the material; the last component is 255 on torn surfaces.
     pub colour: [u8; 4],
-    /// Red, green, blue of the material beyond the nearest border; the last component is 128 on the border,
-    /// more beyond it.
+    /// Red, green, blue of the material beyond the nearest border between materials; the last component is
+    /// 128 on the border, higher in the material beyond it.
     pub other: [u8; 4],
 }
 
@@ -79,7 +79,7 @@ impl Skin {
         &self.faces.indices
     }
 
-    /// Returns the crumbs: elements that are pieces of their own and not part of the surface.
+    /// Returns the crumbs (elements that are pieces of a single voxel). The skin has no triangles for them.
     pub fn crumbs(&self) -> &[ElementId] {
         &self.faces.crumbs
     }
@@ -330,7 +330,8 @@ mod tests {
         let safe = Palette::colour_safe().materials;
         assert!(kept.update(first_body(&world), &safe));
         assert!(!kept.update(first_body(&world), &safe));
-        // Another body with its own grid, and an untorn one with an equal grid.
+        // The same skin then follows two other balls: one with a different grid, and an untorn one with an
+        // equal grid.
         for n in [16, 20] {
             let other = ball(n);
             kept.update(first_body(&other), &candy);

@@ -13,16 +13,19 @@ use crate::palette::bytes;
 use fuwafuwa::{Dim3, SoftBody};
 use glam::{Mat3, Vec2, Vec3, Vec4};
 
-/// Half extent of the height field [mark units, see [`Mark::outline`]], and its number of samples per side.
+/// Half extent of the height field [mark units, see [`Mark::outline`]]. `SIDE` is its number of samples per
+/// side.
 const REACH: f32 = 1.2;
 const SIDE: usize = 25;
 /// Radius over which a height is averaged, in mark units and in voxels; the larger one applies.
 const NEAR: [f32; 2] = [0.12, 1.1];
-/// Depth below the highest skin at a sample from which a point counts as hidden by a fold [mark units].
+/// Depth below the outermost skin at a sample from which skin counts as hidden in a fold and is ignored [mark
+/// units].
 const FOLD: f32 = 0.3;
-/// Offset of marks from the skin towards the eye [mark units], so that no bump of the skin shows through.
+/// Offset of the sticker from the skin towards the eye of the observer [mark units], so that no bump of the
+/// skin shows through.
 const CLOSER: f32 = 0.06;
-/// Rings of a cushion, as fractions of the distance from its centre to its edge.
+/// Rings of vertices of a mark, as fractions of the distance from its centre to its edge.
 const RINGS: [f32; 5] = [1.0, 0.94, 0.8, 0.55, 0.25];
 
 /// Stickers as vertices. Keep the value between frames to reuse its buffers.
@@ -218,11 +221,11 @@ mod tests {
         assert_eq!(whole.vertices.len(), 21);
         for vertex in &whole.vertices {
             let away = Vec3::from(vertex.at).distance(Vec3::splat(0.5));
-            // On the skin, offset towards the eye by at most `CLOSER`.
+            // The sticker lies on the skin, offset towards the eye of the observer by at most `CLOSER`.
             assert!((0.485..0.53).contains(&away), "{away}");
             assert!(vertex.normal[2] > 20000, "{vertex:?}");
         }
-        // After a slice was cut off, the sticker lies on the torn face of the rest.
+        // After a slice is cut off, the sticker lies on the torn surface of the remaining body.
         let corner = Vec3::new(-0.2, -0.2, 0.75);
         let blade = Blade::parallelogram(corner, 1.4 * Vec3::X, 1.4 * Vec3::Y);
         world.cut(soft, &blade).unwrap();
@@ -236,7 +239,7 @@ mod tests {
         for vertex in stuck(&world, &sticker).vertices {
             assert!((0.73..0.81).contains(&vertex.at[2]), "{vertex:?}");
         }
-        // Missing pieces have no stickers.
+        // A sticker on a piece that does not exist has no triangles.
         sticker.piece = PieceId(99);
         assert!(stuck(&world, &sticker).indices.is_empty());
     }

@@ -34,7 +34,8 @@ const LIT: f32 = 0.55;
 const SOFTNESS: [f32; 2] = [0.006, 0.035];
 /// Maximum number of hands that cast shadows, limited by the size of uniform buffers on small devices.
 const MOST_HANDS: usize = 4;
-/// Faces along each side of an octant: for balls that may be large, and for small balls.
+/// Number of quads along each edge of an octant of a ball mesh that may be drawn large; `COARSE` is the
+/// number for small balls.
 const FINE: usize = 12;
 const COARSE: usize = 3;
 

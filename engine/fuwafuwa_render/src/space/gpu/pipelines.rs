@@ -37,7 +37,7 @@ pub struct Pipelines {
     pub dust: RenderPipeline,
     pub line: RenderPipeline,
     pub glow: RenderPipeline,
-    /// Shadow casters, seen from the light.
+    /// Draws the depth of skins as shadow casters, seen from the light.
     pub skin_shadow: RenderPipeline,
     pub element_shadow: RenderPipeline,
     pub bar_shadow: RenderPipeline,
@@ -124,7 +124,8 @@ impl Pipelines {
             }),
             ..clear.clone()
         };
-        // Depth bias in steps; it decides which of two coincident surfaces is behind.
+        // Returns a depth state with a bias in depth steps; positive steps put a surface behind another one
+        // at the same depth.
         let moved = |steps: i32, is_written| {
             Some(DepthStencilState {
                 bias: DepthBiasState {
@@ -165,7 +166,8 @@ impl Pipelines {
                 &solid,
             ),
             skin: drawn(&skin, ("skin_corner", "skin"), &skins, &solid),
-            // Marks of a sticker are painted on top of each other and do not write depth.
+            // The coloured patches of a sticker lie at almost the same depth and are painted over each other,
+            // so they do not write depth.
             sticker: drawn(&skin, ("skin_corner", "sticker"), &skins, &clear),
             ghost_depth: drawn(&skin, ("skin_corner", "ghost"), &skins, &ghost_depth),
             ghost: drawn(&skin, ("skin_corner", "ghost"), &skins, &ghost),
