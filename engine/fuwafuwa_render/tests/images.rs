@@ -279,8 +279,7 @@ fn empty_worlds_and_skinless_bodies_render_in_every_size() {
         };
         let bare = image(&floating(), Look::Skin);
         assert_eq!(bare.len(), 4 * (size[0] * size[1]) as usize);
-        // A body drawn as elements has no skin in the picture, so the skin view equals the picture without
-        // it.
+        // The body with coarse grading has elements but no skin, so the skin view shows an empty picture.
         assert_eq!(bare, image(&coarse, Look::Skin));
         let middle = 4 * (size[1] / 2 * size[0] + size[0] / 2) as usize;
         let shown = &image(&coarse, elements)[middle..middle + 3];

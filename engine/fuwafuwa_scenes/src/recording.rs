@@ -6,11 +6,13 @@ use crate::scene::{BodyText, MAX_SECONDS, Scene, SceneError, shortened};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
 
-/// Version of the format. It increases when an older recording would run differently or has other hashes.
+/// Version of the recording format. It increases when an older recording would run differently or has other
+/// hashes.
 pub const VERSION: u32 = 2;
-/// Maximum size of a recording [bytes]: some hours of two hands.
+/// Maximum size of a recording [bytes], enough for some hours with two hands.
 pub const MAX_BYTES: u64 = 1 << 26;
-/// Maximum number of ticks in a recording: the longest viewing time of a scene at 60 ticks a second.
+/// Maximum number of ticks in a recording: those of the longest viewing time of a scene, at 60 ticks a
+/// second.
 pub const MAX_TICKS: usize = (MAX_SECONDS * 60.0) as usize;
 
 /// A scene, the targets of its hands at each tick, and the resulting hashes.
@@ -19,7 +21,7 @@ pub const MAX_TICKS: usize = (MAX_SECONDS * 60.0) as usize;
 pub struct Recording {
     /// Version of the format.
     pub version: u32,
-    /// Version of this crate.
+    /// Version of this crate that made the recording.
     pub engine: String,
     /// Scene that was recorded.
     pub scene: Scene,
@@ -38,7 +40,7 @@ pub enum RecordingError {
     Text {
         /// Name of the file.
         name: String,
-        /// Field, and what was expected.
+        /// Field with the problem, and what was expected there.
         reason: String,
     },
     /// The recording has another version of the format.
@@ -56,7 +58,7 @@ pub enum RecordingError {
 pub struct Comparison {
     /// Number of ticks that were run.
     pub ticks: usize,
-    /// First compared tick with a different hash, if any.
+    /// First tick with a recorded hash at which the hash of the replay differs, if any.
     pub differs_at: Option<usize>,
 }
 
@@ -70,7 +72,8 @@ impl Recording {
         let recording: Self = match toml::from_str(text) {
             Ok(recording) => recording,
             Err(error) => {
-                // Omits the line itself, which may contain hours of hand targets.
+                // Leaves the quoted line of the file out of the error, because this line may contain hours of
+                // hand targets.
                 let message = shortened(error.message(), 400);
                 let reason = format!("not a valid recording: {message}");
                 return Err(RecordingError::Text { name, reason });
@@ -105,7 +108,8 @@ impl Recording {
         }
         let mut bodies = self.scene.body.iter();
         if bodies.any(BodyText::lacks_content) {
-            // A recording by a stranger must not decide which local files are opened.
+            // Rejects bodies whose file is only named: a recording from an unknown author must not decide
+            // which local files are opened.
             return Err("expected the content of every body that has a file".into());
         }
         Ok(())

@@ -111,7 +111,8 @@ pub const MAX_BODIES: usize = 1024;
 /// of a step, because moving nodes are tested against every rigid body.
 pub const MAX_RIGID: usize = 256;
 
-/// Maximum number of voxels, solid or empty, in all grids of a scene together: the size of the largest model.
+/// Maximum number of voxels, solid or empty, in all grids of a scene together. It equals that of the largest
+/// MagicaVoxel model.
 pub const MAX_VOXELS: usize = 1 << 24;
 
 /// Maximum viewing time of a scene [s]: one day.
@@ -201,7 +202,7 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] names line and field.
     pub fn read(name: &str, text: &str, changes: &[String]) -> Result<Self, SceneError> {
-        // Parsed without the changes first, so that errors name lines of the text.
+        // Parses the text without the changes first, so that errors name lines of the text.
         let scene = toml::from_str(text);
         let mut scene: Self = scene.map_err(|error| SceneError::of_text(name, text, &error))?;
         scene.origin = Origin::of(name, text);
@@ -311,8 +312,8 @@ impl Scene {
             let added = text.add_to(&mut world);
             added.map_err(|wrong| wrong.inside("rigid_body", index))?;
         }
-        // The world was empty, so its rigid bodies are in the order of the lists: obstacles, hands, rigid
-        // bodies.
+        // The world was empty before the build, so its rigid bodies are in the order of the lists: obstacles,
+        // hands, rigid bodies.
         let mut rigids = world.rigid_bodies().map(|(id, _)| id);
         let known = JointTargets {
             bodies: world.soft_bodies().map(|(id, _)| id).collect(),
@@ -346,7 +347,7 @@ impl Scene {
     /// [`SceneError::Shape`] names the body whose file could not be read.
     pub fn embed_files(&mut self, fetch: Fetch) -> Result<(), SceneError> {
         let mut budget = Budget::of_scene(MAX_VOXELS);
-        // Bodies beyond the limit are refused when the scene is built.
+        // Skips bodies beyond the limit: the build rejects the scene because of them.
         for (index, body) in self.body.iter_mut().enumerate().take(MAX_BODIES) {
             let embedded = body.embed_file(fetch, &mut budget);
             embedded.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;

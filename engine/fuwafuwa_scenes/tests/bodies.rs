@@ -91,7 +91,8 @@ fn shapes_build_in_2d_and_3d() {
 
 #[test]
 fn crack_stops_at_unbreakable_core() {
-    // Coarser than the named scene, and weaker around the core, so that it tears soon.
+    // The body is coarser than in the named scene and its material around the core is weaker, so that the
+    // body tears soon.
     let changes = [
         "body.n=32",
         "material.1.strength=250",
@@ -192,7 +193,7 @@ at = [0.0, 3.0, 0.0]
     assert_eq!(first.grid().voxel_size(), 0.5);
     assert_eq!(picture(second), ["33"]);
 
-    // The scene can be recorded, and replayed from the text of the recording.
+    // The scene can be recorded, and the text of the recording can be replayed.
     let recording = Recording::of::<Dim2>(&scene, 3, |_| {}).unwrap();
     let read: Recording = toml::from_str(&toml::to_string(&recording).unwrap()).unwrap();
     assert_eq!(read, recording);

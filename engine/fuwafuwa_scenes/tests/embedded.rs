@@ -1,4 +1,5 @@
-//! Embedded files: no larger than the bodies of the scene need, with the same voxels.
+//! Tests of embedded files: no larger than the bodies of the scene need, and with the same voxels as the
+//! original files.
 
 #[allow(dead_code)]
 mod damage;
@@ -55,8 +56,8 @@ fn cluttered_model(size: [u8; 3]) -> Vec<u8> {
     [b"VOX ", &version[..], &main].concat()
 }
 
-/// Checks that a scene has the same voxels with the whole file and with the reduced one. Returns the length
-/// of the embedded content.
+/// Checks that a scene has the same voxels with the whole file and with the file reduced to the voxels of its
+/// bodies. Returns the length of the embedded content.
 fn check<D: Dim>(file: &str, bytes: &[u8], fields: &str) -> usize {
     let material = "[[material]]\n".repeat(3);
     let text = format!(
@@ -106,7 +107,8 @@ fn embed_reduces_large_picture_to_voxels() {
     }
     let small = format!("n = 40\n{colours}\n");
     assert!(check::<Dim2>("b.png", &wide, &small) < 10_000);
-    // A drawing that is mostly solid, and a picture that is solid everywhere.
+    // An opaque picture, read as a drawing: in 64 voxels across it is mostly solid, in 6 it is solid
+    // everywhere.
     let opaque = noisy_picture(200, 300, true);
     assert!(check::<Dim2>("c.png", &opaque, "n = 64\n") < 10_000);
     assert!(check::<Dim2>("d.png", &opaque, "n = 6\n") < 1000);

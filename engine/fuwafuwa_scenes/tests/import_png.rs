@@ -80,8 +80,8 @@ fn png_puts_top_row_highest() {
 fn png_decodes_each_colour_type_and_depth() {
     use BitDepth::{Eight, Four, One, Sixteen, Two};
     use ColorType::{Grayscale, GrayscaleAlpha, Indexed, Rgb, Rgba};
-    // Each case has a solid and an empty pixel: dark and light, opaque and transparent, or another colour and
-    // the transparent colour.
+    // Each case has a solid and an empty pixel. They are dark and light, opaque and transparent, or of
+    // another colour and of the transparent colour of the file.
     let half = &[255, 255, 128, 0, 0, 0, 127, 255];
     let none = |_: &mut Setting| {};
     let palette = |encoder: &mut Setting| encoder.set_palette(vec![90, 0, 0, 255, 255, 200]);
@@ -152,11 +152,12 @@ fn png_selects_opaque_pixels_of_sprite_and_dark_pixels_of_drawing() {
     };
     let (black, white) = ([0, 0, 0, 255], [255; 4]);
     check(&pixels(&[black, white, [0, 0, 0, 127]]), 8, &["##."]);
-    // No pixel is more than half transparent, so the picture counts as a drawing: pixels are blended with
-    // white paper.
+    // Here no pixel is more than half transparent, so the picture is read as a drawing: its pixels are
+    // blended with white paper.
     check(&pixels(&[black, white, [0, 0, 0, 128]]), 8, &["#.#"]);
     check(&pixels(&[black, white, [20, 20, 20, 128]]), 8, &["#.."]);
-    // Orange, yellow, pale pink, light grey.
+    // Colours of the pixels: orange, yellow, pale pink, light grey. Only the first two are dark or strong
+    // enough to be solid.
     let crayons = [[255, 165, 0], [255, 255, 0], [255, 190, 200], [200; 3]];
     let crayons = crayons.map(|[red, green, blue]| [red, green, blue, 255]);
     check(&pixels(&crayons), 8, &["##.."]);
@@ -165,20 +166,20 @@ fn png_selects_opaque_pixels_of_sprite_and_dark_pixels_of_drawing() {
 #[test]
 fn grid_scales_down_large_picture() {
     let bytes = drawing(&["##..", "#...", "####", "..##"]);
-    // Quarters with 3, 0, 2 and 4 of 4 pixels black.
+    // With 2 voxels across, each voxel covers 4 pixels, of which 3, 0, 2 and 4 are black.
     check(&bytes, 2, &["#.", "##"]);
     check(&bytes, 9, &["##..", "#...", "####", "..##"]);
-    // 3 pixels on 2 voxels: each covers one pixel and half of the middle one.
+    // A row of 3 pixels becomes 2 voxels: each voxel covers one pixel and half of the middle one.
     check(&drawing(&["#.#"]), 2, &["##"]);
     check(&drawing(&["..#"]), 2, &[".#"]);
     check(&drawing(&[".#.", ".#.", "##."]), 2, &["..", "#."]);
-    // The sides are rounded, and a long picture keeps at least one row.
+    // The sizes in voxels are rounded, and a long picture keeps at least one voxel across.
     check(&drawing(&["#####"; 3]), 3, &["###", "###"]);
     check(&drawing(&["########"]), 2, &["##"]);
     check(&drawing(&["#"; 500]), 2, &["#", "#"]);
 }
 
-/// Red, a darker red, green and transparent.
+/// Pixels in red, a darker red, green and transparent.
 const PAINTED: [[u8; 4]; 8] = [
     [255, 0, 0, 255],
     [200, 40, 40, 255],
@@ -208,7 +209,7 @@ fn grid_takes_material_of_nearest_colour() {
     assert_eq!(painted(9, &[(red, 3), (green, 0)]), ["33..", "33.."]);
     assert_eq!(painted(9, &[(red, 7)]), ["777.", "777."]);
     assert_eq!(painted(2, &[(red, 3), (green, 2)]), ["32"]);
-    // Half is red and a quarter green, so red has the largest solid area.
+    // Half of the picture is red and a quarter is green, so red has the largest solid area.
     assert_eq!(painted(1, &[(red, 3), (green, 2)]), ["3"]);
 }
 
@@ -256,7 +257,7 @@ fn decode_rejects_wrong_size_from_header() {
         complaint(&with_size(&one, [most + 1, 1])),
         "test.png, chunk IHDR at byte 8: 4097 pixels on a side are too many, the limit is 4096"
     );
-    // More pixels than the file can hold at the best compression.
+    // The header states more pixels than a file of this length can contain at the best compression.
     assert_eq!(
         complaint(&with_size(&one, [4096, 4096])),
         "test.png, chunk IHDR at byte 8: expected at least 16261 bytes for 4096 x 4096 pixels, found 67"
@@ -324,7 +325,7 @@ fn decode_survives_damaged_pictures() {
         for _ in 0..1500 {
             let mut broken = noise.damaged(&bytes);
             damage::check(import(&broken, 4));
-            // Most damage is caught by a checksum; with corrected checksums it reaches the decoder.
+            // A checksum reveals most damage, so corrected checksums let the damage reach the decoder.
             mend_checksums(&mut broken);
             damage::check(import(&broken, 4));
         }

@@ -90,7 +90,7 @@ fn grid_maps_colours_and_palette_indices_to_materials() {
         let (indices, named) = (indices.iter().copied(), named.iter().copied());
         let (indices, named) = (indices.collect(), named.collect());
         let grid = model.grid(1.0, &Colours { indices, named });
-        // The voxels with index 1, 2, 7 and 255.
+        // Positions of the voxels with palette index 1, 2, 7 and 255.
         let places = [[0, 0, 2], [1, 0, 2], [1, 3, 0], [0, 0, 0]];
         grid.map(|grid| places.map(|at| grid.material(at)))
             .map_err(|error| error.to_string())
@@ -99,7 +99,8 @@ fn grid_maps_colours_and_palette_indices_to_materials() {
     assert_eq!(grid(&[], &[]), Ok([1, 2, 7, 255]));
     let every = [(1, 3), (2, 3), (7, 0), (255, 1)];
     assert_eq!(grid(&every, &[]), Ok([3, 3, 0, 1]));
-    // Black is closer to green; an index takes precedence over a colour.
+    // Black voxels get the material of green, which is closer to black than red is; an index takes precedence
+    // over a colour.
     assert_eq!(grid(&[], &[(red, 1), (green, 2)]), Ok([1, 1, 2, 2]));
     assert_eq!(grid(&[(1, 9)], &[(red, 1), (green, 2)]), Ok([9, 1, 2, 2]));
     let lacking = grid(&[(1, 3), (2, 3), (255, 1)], &[]);
@@ -258,7 +259,7 @@ fn decode_survives_deeply_nested_chunks() {
 
 #[test]
 fn decode_rejects_truncated_model_at_every_length() {
-    // The stated length of MAIN reveals every missing byte.
+    // The length that the chunk MAIN states reveals every missing byte.
     let bytes = full();
     for length in 0..bytes.len() {
         match import(&bytes[..length]).unwrap_err() {
@@ -274,7 +275,7 @@ fn decode_rejects_truncated_model_at_every_length() {
 #[test]
 fn decode_survives_damaged_models() {
     let mut noise = Noise(3);
-    // Leaves out the ignored chunks of `full`, so that most damage hits relevant bytes.
+    // The model has none of the chunks that the decoder ignores, so that most damage hits relevant bytes.
     let first = [[0, 0, 0, 1], [1, 2, 3, 7]];
     let chunks = [size([2, 3, 4]), voxels(2, &first), chunk(b"what", b"", &[])];
     let mut taken = 0;

@@ -36,7 +36,7 @@ fn error_names_file_line_field_and_expectation() {
     let body = "width = 1.0";
     let obstacle = "ball = { centre = [0.0, -1.0, 0.0], radius = 0.5 }";
     for (replaced, by, expected) in [
-        // Texts that are not scenes.
+        // Cases in which the text does not have the structure of a scene.
         (
             "dim = 2",
             "dim = 2 3",
@@ -93,7 +93,7 @@ fn error_names_file_line_field_and_expectation() {
             "",
             ", line 13: hand 1, radius: expected exactly one of radius, box and capsule",
         ),
-        // Invalid values.
+        // Cases in which a value is invalid.
         (
             "dim = 2",
             "dim = 4",
@@ -386,8 +386,8 @@ fn build_limits_number_of_bodies_and_sum_of_voxels() {
     );
 }
 
-/// Regression: a text of 1 MB could require 10^12 distance evaluations, or contain any number of obstacles
-/// that every node was tested against.
+/// Regression: a text of 1 MB could require 10^12 distance evaluations. It could also contain any number of
+/// obstacles, each of which is tested against every node.
 #[test]
 fn build_rejects_expensive_scenes_before_work_begins() {
     let part = "[[body.part]]\nfill = 0\nball = { centre = [9.0, 9.0, 0.0], radius = 0.1 }\n";
@@ -425,7 +425,7 @@ fn build_rejects_expensive_scenes_before_work_begins() {
     );
 }
 
-/// Regression: the voxels were counted only after the grid was built.
+/// Regression: the voxels were counted only after the memory for the grid was allocated.
 #[test]
 fn build_rejects_too_large_grid_before_allocation() {
     let dim3 = |text: &str| {

@@ -1,4 +1,4 @@
-//! Keys that were renamed after version 0.2: old files give the same scenes.
+//! Scene files with keys that were renamed after version 0.2 give the same scenes as files with the new keys.
 
 use fuwafuwa::Dim2;
 use fuwafuwa_scenes::{Recording, Scene};

@@ -1,4 +1,5 @@
-//! Round trips: text → world → text → world.
+//! Round trips: the text of a scene becomes a world, the world becomes a text, and this text becomes an equal
+//! world.
 
 use fuwafuwa::{
     Dim, Dim2, Dim3, DimVector, Event, Joint, JointAnchor, Layers, Material, RigidBody,
@@ -116,7 +117,7 @@ fn check_round_trip<D: Dim>(scene: &Scene, what: &str) {
     let mut other = again(&world, what);
     assert_eq!(other.config(), world.config(), "{what}");
     assert_eq!(other.hash(), world.hash(), "{what}, tick 0");
-    // The rebuilt world gives the same text.
+    // The world built from the written scene gives the same text again.
     let texts = [&world, &other].map(|world| Scene::of_world(world).unwrap().text().unwrap());
     assert_eq!(texts[0], texts[1], "{what}");
     for tick in 0..60 {
@@ -185,7 +186,7 @@ fn build_applies_fields_of_scene() {
     let Vec2 { x, y } = rigids[3].rotation().apply(Vec2::X);
     assert!((x - 0.5f32.cos()).abs() < 1e-6 && (y - 0.5f32.sin()).abs() < 1e-6);
     assert_eq!(world.joints().count(), 3);
-    // The text stays readable where fields suffice.
+    // The text describes bodies by readable fields if these suffice.
     let text = Scene::of_world(&world).unwrap().text().unwrap();
     assert!(
         text.contains("runs = ") && text.contains("motion_type = \"dynamic\""),
@@ -242,7 +243,7 @@ fn check_torn<D: Dim>() {
             .collect()
     };
     assert_eq!(rigids(&other), rigids(&world));
-    // The two worlds behave alike afterwards.
+    // The original and the rebuilt world behave alike in the following ticks.
     let (mut world, mut other) = (world, other);
     (0..30).for_each(|_| _ = (world.step(), other.step()));
     let centres =

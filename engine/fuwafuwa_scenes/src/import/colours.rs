@@ -8,8 +8,8 @@ pub struct Colours {
     /// Materials by palette index, 1 to 255; only for models.
     pub indices: BTreeMap<u8, u8>,
     /// Materials by red, green and blue. A voxel gets the material of the nearest colour, by the sum of
-    /// squared differences; of equally near colours, the first one counts. Shades of a colour and smoothed
-    /// edges therefore need no entries.
+    /// squared differences, and the first of equally near colours. Shades of a colour and smoothed edges
+    /// therefore need no entries.
     pub named: BTreeMap<[u8; 3], u8>,
 }
 

@@ -49,7 +49,7 @@ pub enum Problem {
         what: &'static str,
         /// Number that was found.
         found: u64,
-        /// Maximum.
+        /// Largest accepted number.
         limit: u64,
     },
     /// The shape has no solid voxel. The text names what would be solid.
@@ -106,7 +106,7 @@ pub fn in_file<T>(file: &str, outcome: Result<T, PositionedProblem>) -> Result<T
     })
 }
 
-/// Converts an error of the grid; `sought` names what would have been solid.
+/// Converts an error of the engine's voxel grid; `sought` names what would have been solid.
 pub fn no_grid(error: Error, sought: &'static str) -> PositionedProblem {
     let problem = match error {
         Error::EmptyGrid => Problem::Empty(sought),

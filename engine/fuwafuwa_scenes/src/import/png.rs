@@ -12,7 +12,7 @@ use fuwafuwa::MAX_EXTENT;
 use fuwafuwa::{Dim2, VoxelGrid};
 use std::io::{Cursor, ErrorKind};
 
-/// Maximum width and height of a picture [pixels]; the largest takes 64 MiB when decoded.
+/// Maximum width and height of a picture [pixels]; a picture of this size takes 64 MiB when decoded.
 pub const MAX_PIXELS: u32 = 4096;
 
 /// Maximum memory for the decoder's own tables and rows [bytes].
@@ -107,7 +107,8 @@ impl Picture {
         let [columns, rows, _] = grid.size();
         let colour_of = |material: u8| match material {
             0 => Some([u8::MAX, u8::MAX, u8::MAX, 0]),
-            // A file without a transparent pixel counts as a drawing, in which black is solid, too.
+            // A file without a transparent pixel is read as a drawing on white paper, in which black is
+            // solid, too.
             _ if colours.named.is_empty() => Some([0, 0, 0, u8::MAX]),
             _ => {
                 let mut named = colours.named.iter();
@@ -203,7 +204,7 @@ fn is_opaque(pixel: [u8; 4]) -> bool {
     pixel[3] >= 128
 }
 
-/// Returns whether a pixel, laid over white paper, is dark or coloured.
+/// Returns whether a pixel, blended with white paper, is dark or strongly coloured.
 fn is_drawn(pixel: [u8; 4]) -> bool {
     const WHITE: u32 = 255;
     let [red, green, blue, alpha] = pixel.map(u32::from);
@@ -233,7 +234,7 @@ fn decode(cursor: &mut Cursor<&[u8]>) -> Result<Result<Pixels, PositionedProblem
         };
         return Ok(Err((place, too_large)));
     }
-    // Checked before memory is allocated: a file of a few bytes cannot contain a large picture.
+    // This check runs before memory is allocated: a file of a few bytes cannot contain a large picture.
     let needed = header.raw_bytes().div_ceil(MOST_INFLATED);
     if needed > length {
         let expected = format!("at least {needed} bytes for {width} x {height} pixels");
@@ -244,7 +245,7 @@ fn decode(cursor: &mut Cursor<&[u8]>) -> Result<Result<Pixels, PositionedProblem
     let length = reader.output_buffer_size();
     let mut channels = vec![0; length.ok_or(DecodingError::LimitsExceeded)?];
     let frame = reader.next_frame(&mut channels)?;
-    // Reads to the end, so that a file truncated after the last row is rejected, too.
+    // Reads the file to its end, so that a file truncated after the last row of pixels is rejected, too.
     reader.finish()?;
     let pixels = channels[..frame.buffer_size()]
         .chunks_exact(frame.color_type.samples())
@@ -269,7 +270,8 @@ fn encode([width, height]: [u32; 2], pixels: &[u8]) -> Result<Vec<u8>, EncodingE
     Ok(bytes)
 }
 
-/// Returns the size in voxels, with proportions as close as whole voxels allow.
+/// Returns the size in voxels of a picture with `across` voxels on its longer side, with proportions as close
+/// as whole voxels allow.
 fn scaled(size: [usize; 2], across: usize) -> [usize; 2] {
     let longer = size[0].max(size[1]);
     let across = across.min(longer);

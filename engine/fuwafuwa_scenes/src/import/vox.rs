@@ -31,7 +31,7 @@ const VERSIONS: std::ops::RangeInclusive<u32> = 150..=200;
 pub struct Model {
     file: String,
     size: [usize; 3],
-    /// Palette indices, 0 where empty, the first axis fastest.
+    /// Palette index of each voxel, 0 where empty. The first axis changes fastest.
     voxels: Vec<u8>,
     /// Red, green and blue, palette index 1 first.
     palette: Option<Vec<[u8; 3]>>,
@@ -136,7 +136,7 @@ impl Model {
         let mut voxels = Vec::new();
         for (at, &index) in self.voxels.iter().enumerate() {
             let (x, y, z) = (at % width, at / width % height, at / width / height);
-            // Converts to the axes of the file.
+            // Converts the position to the axes of the file, on which z points up.
             let [x, y, z] = [x, depth - 1 - z, y].map(|k| k as u8);
             if index != 0 {
                 voxels.extend([x, y, z, index]);
@@ -338,8 +338,8 @@ impl Chunk<'_> {
         Ok(size)
     }
 
-    /// Returns the palette indices of a model of `size` (on the axes of the file) in the engine's order. If a
-    /// voxel occurs twice, the later index counts.
+    /// Returns the palette indices of a model of `size` (on the axes of the file) in the engine's order. If
+    /// the file lists a voxel twice, the voxel gets the later index.
     fn voxels(&self, size: [usize; 3]) -> Result<Vec<u8>, PositionedProblem> {
         let mut contents = self.contents;
         let count = contents.number("the number of voxels")?;

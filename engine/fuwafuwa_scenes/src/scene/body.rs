@@ -35,7 +35,7 @@ pub struct MaterialText {
     pub unbreakable: bool,
 }
 
-/// A `[[body]]` table. It requires exactly one of `shape`, `file`, `voxels` and `state`.
+/// A `[[body]]` table. It requires exactly one of the fields `shape`, `file`, `voxels` and `state`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BodyText {
@@ -61,7 +61,8 @@ pub struct BodyText {
     /// Number of voxels on each axis in multiples of `n`, e.g. [3.0, 1.0, 1.0]; only for a box or an empty
     /// grid.
     pub proportions: [f32; 3],
-    /// Number of the material, default 1; not allowed for models, nor for a picture with `colours`.
+    /// Number of the material, default 1; not allowed for a MagicaVoxel model, nor for a picture with
+    /// `colours`.
     pub material: Option<u8>,
     /// Material number for each colour of the file (`"#d04030" = 2`; the nearest colour decides) or palette
     /// index of a model (`"79" = 2`); 0 leaves the voxel empty. Without `colours`, the palette indices of a
@@ -81,9 +82,10 @@ pub struct BodyText {
     pub gravity_scale: Option<f32>,
     /// Contact layers.
     pub layers: Option<LayersText>,
-    /// Arbitrary number of the user.
+    /// User-defined number, which the engine ignores.
     pub user_data: Option<u64>,
-    /// Spacing of the planes on every axis along which the body is cut [m]; not cut if missing.
+    /// Distance between the planes along which the body is cut on every axis [m]; not cut if
+    /// missing.
     pub diced: Option<f32>,
     /// Whether the body is cut into single voxels.
     pub crumbled: bool,
@@ -97,7 +99,7 @@ pub struct BodyText {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VoxelsText {
-    /// Number of voxels on each axis; 1 on the third in 2D.
+    /// Number of voxels on each axis; 1 on the third axis in 2D.
     pub size: [usize; 3],
     /// Edge length of a voxel [m].
     pub voxel_size: f32,
@@ -193,7 +195,8 @@ pub fn extension_of(name: &str) -> String {
 impl MaterialText {
     pub(super) fn material(&self) -> Material {
         let usual = Material::default();
-        // Infinite strength alone does not suffice: a crack could enter from a weaker neighbour.
+        // An unbreakable material gets infinite toughness, too: with infinite strength alone, a crack could
+        // enter from a weaker neighbour.
         let borne = |given: Option<f32>, usual| match self.unbreakable {
             true => f32::INFINITY,
             false => given.unwrap_or(usual),

@@ -24,19 +24,19 @@ impl Budget {
             voxels: 0,
             distances: 1 << 27,
             plane_tests: 1 << 26,
-            // Enough for four of the largest pictures with 16 colours each.
+            // Budget for four pictures of the maximum size with 16 named colours each.
             colour_comparisons: 1 << 30,
         }
     }
 
-    /// Takes `count` voxels.
+    /// Subtracts `count` voxels from the budget.
     pub(super) fn take_voxels(&mut self, count: usize) -> Result<(), FieldError> {
         self.check_voxels(count)?;
         self.voxels += count;
         Ok(())
     }
 
-    /// Checks that `count` voxels are left.
+    /// Checks that the budget has `count` voxels left.
     pub(super) fn check_voxels(&self, count: usize) -> Result<(), FieldError> {
         let (most, found) = (self.most_voxels, self.voxels.saturating_add(count));
         let expected = format!(
@@ -45,7 +45,7 @@ impl Budget {
         require(found <= most, "n", expected)
     }
 
-    /// Takes one distance evaluation for each part and voxel.
+    /// Subtracts one distance evaluation for each part and voxel from the budget.
     pub(super) fn take_distances(&mut self, parts: usize, voxels: usize) -> Result<(), FieldError> {
         let most = self.distances / voxels.max(1);
         let expected =
@@ -55,7 +55,7 @@ impl Budget {
         Ok(())
     }
 
-    /// Takes one colour comparison for each pixel and colour.
+    /// Subtracts one colour comparison for each pixel and colour from the budget.
     pub(super) fn take_pixels(&mut self, pixels: usize, colours: usize) -> Result<(), FieldError> {
         let (most, colours) = (self.colour_comparisons / pixels.max(1), colours.max(1));
         let expected = format!("expected {most} at most for {pixels} pixels, found {colours}");
@@ -69,8 +69,8 @@ impl Budget {
 mod tests {
     use super::*;
 
-    /// Regression: the limits applied to each body alone, so a thousand bodies could exceed them a
-    /// thousandfold.
+    /// Regression: the limits applied to each body separately, so a scene of a thousand bodies could require
+    /// a thousand times the allowed work.
     #[test]
     fn budget_limits_sum_over_all_bodies() {
         let mut budget = Budget::of_scene(1000);

@@ -108,7 +108,7 @@ impl BodyText {
         let voxel_size = grid.voxel_size();
         let expected = format!("expected a voxel, {voxel_size} m, or more, found {spacing}");
         require(spacing >= voxel_size, "diced", expected)?;
-        // Each cutting plane is tested against every voxel.
+        // Number of cutting planes on an axis. The budget counts one plane test for each plane and voxel.
         let blades = |&extent: &i32| (extent as f32 * voxel_size / spacing) as usize;
         let blades: usize = grid.size()[..D::N].iter().map(blades).sum();
         let voxels = grid.voxels().count();
@@ -134,7 +134,7 @@ pub(super) fn rotation_of<D: Dim>(vector: [f32; 3]) -> Result<Rotation, FieldErr
     })
 }
 
-/// Requires in 2D that a rotation or angular velocity is about the third axis.
+/// Returns an error in 2D if a rotation or angular velocity is not about the third axis.
 pub(super) fn require_turning<D: Dim>(field: &str, vector: [f32; 3]) -> Result<(), FieldError> {
     let flat = D::N == 3 || vector[..2] == [0.0; 2];
     let expected = "expected 0 except on the third axis in a world with dim = 2";
@@ -149,7 +149,7 @@ fn dice<D: Dim>(body: &mut SoftBody<D>, spacing: f32) {
         .map(|k| k as f32 * body.grid().voxel_size());
     let low = Vec3::splat(-0.5);
     let long = Vec3::from(size) * 1.2 + 1.0;
-    // Blades are built for one dimension only.
+    // A blade belongs to one dimension, so the body is cast to the type of that dimension.
     let body: &mut dyn Any = body;
     for axis in 0..D::N {
         let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -167,7 +167,7 @@ fn dice<D: Dim>(body: &mut SoftBody<D>, spacing: f32) {
             } else if let Some(body) = body.downcast_mut::<SoftBody<Dim2>>() {
                 let (from, to) = (corner, corner + side(1 - axis));
                 let ends = [from, to].map(Vec2::from_vec3);
-                // The normal points along the axis, as in 3D.
+                // The normal of the cut points along the axis, as in 3D.
                 match axis {
                     0 => body.cut(&Blade::segment(ends[0], ends[1])),
                     _ => body.cut(&Blade::segment(ends[1], ends[0])),

@@ -9,8 +9,8 @@ use crate::import::{FilePosition, ImportError, Model, Picture, Problem};
 use fuwafuwa::MAX_EXTENT;
 use std::io;
 
-/// Size up to which a file is embedded whole [bytes]. A photo is about a hundred times as large, although the
-/// voxels of its body fit into this size.
+/// Maximum size of a file that is embedded whole [bytes]. Larger files, such as photos, are reduced to the
+/// voxels of their bodies.
 const SMALL: usize = 1 << 16;
 
 /// Function that reads a picture or a model named in a scene. It decides where files are searched.

@@ -30,7 +30,7 @@ pub enum SceneError {
     Text {
         /// Name of the scene or file.
         name: String,
-        /// Line of the error, if it has one.
+        /// Line of the error, if the parser gives one.
         line: Option<usize>,
         /// Text that was found, and what was expected.
         reason: String,
@@ -214,7 +214,7 @@ impl Origin {
     }
 
     pub(super) fn error(&self, wrong: FieldError) -> SceneError {
-        // A value that is missing from the text takes the line of the entry it belongs to.
+        // A value that is missing from the text is reported at the line of the table that should contain it.
         let mut path = wrong.path.as_str();
         let line = loop {
             match (self.lines.get(path), path.rsplit_once('.')) {
@@ -233,7 +233,7 @@ impl Origin {
                 name,
                 line,
                 field,
-                // The reason may quote a key or a path as long as the file.
+                // Shortens the reason, because it may quote a key or a path as long as the file.
                 reason: shortened(&reason, 400),
             },
             Reason::Import(error) => SceneError::Shape {

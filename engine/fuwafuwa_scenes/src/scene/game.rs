@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 pub struct GameText {
     /// Name of the level.
     pub name: LocalizedText,
-    /// Target region, which the bars enclose.
+    /// Region that must be filled, enclosed by the wooden bars.
     pub basket: Option<BoxText>,
     /// Share of the bodies' mass that must rest in the basket, above 0 and up to 1; default 0.6.
     #[serde(default = "usual_share")]
@@ -58,9 +58,9 @@ pub struct LocalizedText {
 pub struct WishText {
     /// Maximum time to win [s].
     pub seconds: Option<f32>,
-    /// Minimum share of the mass that is still in one piece at the win, 0 to 1.
+    /// Minimum share of the mass in the largest piece when the level is won, 0 to 1.
     pub kept: Option<f32>,
-    /// Minimum number of pieces at the win.
+    /// Minimum number of pieces when the level is won.
     pub pieces: Option<usize>,
     /// Route by which the level must be won.
     pub route: Option<RouteText>,

@@ -12,7 +12,7 @@ use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Error, Shape, VoxelGrid};
 /// Maximum number of colours that a body can name: the size of a palette.
 const MAX_COLOURS: usize = 255;
 
-/// Builds the grid of a body, if the budget suffices.
+/// Builds the voxel grid of a body, if the budget of the scene suffices for it.
 pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGrid<D>, FieldError> {
     let good = text.width > 0.0 && text.width.is_finite();
     let expected = format!("expected a positive number of metres, found {}", text.width);
@@ -116,7 +116,8 @@ fn of_form<D: Dim>(text: &BodyText, form: Form, budget: &Budget) -> Result<Voxel
         false => [n; 3],
     };
     extent[D::N..].fill(1);
-    // Extents above the maximum are rejected below, where the grid is created.
+    // Checks the budget only for allowed extents: larger extents are rejected below, where the grid is
+    // created.
     if extent.iter().all(|&k| k <= MAX_EXTENT) {
         budget.check_voxels(extent.iter().product())?;
     }

@@ -36,8 +36,8 @@ pub enum JointKindText {
     Rope,
 }
 
-/// A joint anchor on a body, an obstacle, a hand or a rigid body, named by its number from 1 in its list;
-/// without any of them, a fixed point of the world.
+/// A joint anchor on a body, an obstacle, a hand or a rigid body, given by its number in its list, counted
+/// from 1. Without any of these numbers, the anchor is a fixed point of the world.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JointAnchorText {
@@ -53,8 +53,8 @@ pub struct JointAnchorText {
     /// Position in the world [m].
     #[serde(alias = "at")]
     pub point: [f32; 3],
-    /// Radius around `point` in which the nodes of a body are attached [m]; without nodes in it, the nearest
-    /// node is attached.
+    /// Radius around `point` in which the nodes of a body are attached [m]. If no node is within the radius,
+    /// the nearest node is attached.
     pub radius: Option<f32>,
 }
 

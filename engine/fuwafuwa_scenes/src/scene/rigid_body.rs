@@ -11,8 +11,8 @@ use fuwafuwa::{
 };
 use serde::{Deserialize, Serialize};
 
-/// A `[[rigid_body]]` table: one of the four shapes, given as if it stood at the origin, and its motion type; or
-/// only a `state`, which contains everything.
+/// A `[[rigid_body]]` table: a motion type and one of the four shapes, given as if it stood at the origin. A
+/// table with a `state` has no other fields.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RigidBodyText {
@@ -64,7 +64,7 @@ pub struct RigidBodyText {
     pub sensor: bool,
     /// Contact layers.
     pub layers: Option<LayersText>,
-    /// Arbitrary number of the user.
+    /// User-defined number, which the engine ignores.
     pub user_data: Option<u64>,
 }
 

@@ -1,4 +1,4 @@
-//! Complete states of soft and rigid bodies: base64 snapshots of worlds that contain only the one body.
+//! Complete states of soft and rigid bodies, each encoded in base64 as the snapshot of a world with one body.
 
 use super::error::FieldError;
 use base64::Engine;
@@ -43,7 +43,7 @@ pub(super) fn add_rigid_body<D: Dim>(
     copy_into(world, body).map_err(|error| FieldError::new("state", error))
 }
 
-/// Adds a copy of a body of another world, with its target.
+/// Adds a copy of a rigid body of another world, together with the target of the body.
 fn copy_into<D: Dim>(
     world: &mut World<D>,
     body: RigidBodyRef<'_, D>,

@@ -201,8 +201,8 @@ fn with_properties_of<D: Dim>(made: SoftBody<D>, body: &SoftBody<D>) -> Option<S
     world.remove(id).ok()
 }
 
-/// Returns the translation [m] from `made` to `body`, if it reproduces every node position exactly, rounding
-/// included.
+/// Returns the translation [m] that moves every node of `made` exactly to its position in `body`, rounding
+/// included; `None` if there is none.
 fn translation_between<D: Dim>(made: &SoftBody<D>, body: &SoftBody<D>) -> Option<D::Vector> {
     let mut at = D::Vector::ZERO;
     let mut ids = made.mesh().nodes().map(|(id, _)| id);
@@ -215,8 +215,8 @@ fn translation_between<D: Dim>(made: &SoftBody<D>, body: &SoftBody<D>) -> Option
     };
     for axis in 0..D::N {
         let fits = |by: f32| both().all(|(from, to)| from[axis] + by == to[axis]);
-        // At the node nearest to 0, the sum was rounded least. There the difference is exact up to the last
-        // bit.
+        // At the node nearest to 0, the addition of the translation was rounded least. There the difference
+        // of the positions is exact up to the last bit.
         let lowest = both().min_by(|a, b| a.0[axis].abs().total_cmp(&b.0[axis].abs()));
         let (from, to) = lowest?;
         let by = to[axis] - from[axis];
@@ -233,7 +233,8 @@ fn numbers_in(all: &mut Vec<Material>, own: &[Material]) -> Vec<u8> {
     }
     let mut numbers = Vec::new();
     for (index, material) in own.iter().enumerate() {
-        // If both lists begin with the same materials, the numbers do not change.
+        // If the list of the scene and that of the body begin with the same materials, the numbers do not
+        // change.
         let same = all.get(index) == Some(material);
         let known = all.iter().position(|known| known == material);
         let place = if same { Some(index) } else { known };
@@ -251,14 +252,14 @@ fn runs(materials: impl Iterator<Item = u8>) -> String {
     let mut runs = String::new();
     for run in all.chunk_by(|a, b| a == b) {
         let space = if runs.is_empty() { "" } else { " " };
-        // Writing to a string cannot fail.
+        // Ignores the result, because writing to a string cannot fail.
         let _ = write!(runs, "{space}{}x{}", run.len(), run[0]);
     }
     runs
 }
 
-/// Describes joints by their original anchors, otherwise by the current ones, and checks that the scene
-/// reproduces them.
+/// Describes joints by their original anchors or, if the scene would not reproduce them so, by their current
+/// anchors. Fails if the scene reproduces neither.
 fn write_joints<D: Dim>(world: &World<D>, scene: &mut Scene) -> Result<(), FieldError> {
     if world.joints().next().is_none() {
         return Ok(());
@@ -354,7 +355,8 @@ fn anchor_text<D: Dim>(
     })
 }
 
-/// Returns a view of all nodes and dynamic rigid bodies, with a margin of 0.5 m.
+/// Returns the low and the high corner of a box around all nodes and dynamic rigid bodies, with a margin of
+/// 0.5 m.
 fn view_of<D: Dim>(world: &World<D>) -> [[f32; 3]; 2] {
     let nodes = world.soft_bodies().flat_map(|(_, body)| {
         let ids = body.mesh().nodes().map(|(id, _)| id);

@@ -13,7 +13,8 @@ impl Noise {
         (self.0 >> 33) as usize % limit
     }
 
-    /// Returns a copy with one to four bytes changed: a flipped bit, an extreme value, or a random one.
+    /// Returns a copy of `bytes` with one to four bytes changed: a flipped bit, an extreme value, or a random
+    /// value.
     pub fn damaged(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut damaged = bytes.to_vec();
         for _ in 0..=self.below(4) {
