@@ -87,7 +87,7 @@ impl From<ImportError> for VoxelsError {
 }
 
 /// Reads PNG files as [`Voxels<Dim2>`]. If the picture has transparency, opaque pixels are solid; otherwise
-/// dark or strongly coloured pixels are. Bevy's own loader still reads PNG files as images, because the
+/// dark or strongly coloured pixels are solid. Bevy's own loader still reads PNG files as images, because the
 /// requested asset type selects the loader.
 #[derive(Copy, Clone, Debug, Default, TypePath)]
 pub struct SilhouetteLoader;
@@ -155,7 +155,8 @@ async fn bytes_of(reader: &mut dyn Reader) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Implemented by hand, because the derive would require `TypePath` of the engine's dimension types.
+/// This trait is implemented by hand, because the derive macro would require `TypePath` of the engine's
+/// dimension types.
 impl<D: Dim> TypePath for Voxels<D> {
     fn type_path() -> &'static str {
         match D::N {

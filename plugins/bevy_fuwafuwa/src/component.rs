@@ -32,14 +32,14 @@ pub(crate) enum Source<D: Dimension> {
     Asset(Handle<Voxels<D>>),
 }
 
-/// Materials of a soft body, number 1 first. The last one is used for all higher numbers. Read when the body
-/// enters the world.
+/// Materials of a soft body, number 1 first. The last material of the list is used for all higher numbers.
+/// The component is read when the body enters the world.
 #[derive(Component, Clone, Debug, PartialEq)]
 pub struct SoftMaterials(pub Vec<Material>);
 
-/// Velocity of a soft body as a whole, or of a rigid body. It is the initial velocity when the body enters
-/// the world, and it is updated after each tick. If you change it, a soft body gets the difference added in
-/// the next tick, and the velocity of a dynamic rigid body is set. For other rigid bodies it is read-only.
+/// Velocity of a soft body as a whole, or of a rigid body. The component gives the initial velocity when the
+/// body enters the world, and is updated after each tick. If you change it, the next tick adds the difference
+/// to a soft body, and sets the velocity of a dynamic rigid body. For other rigid bodies it is read-only.
 #[derive(Component, Copy, Clone, Debug, Default, PartialEq)]
 pub struct Velocity {
     /// Velocity of the centre of mass [m/s].
@@ -56,8 +56,8 @@ pub struct ExternalImpulse {
     pub impulse: Vec3,
     /// Point of application, world space [m].
     pub point: Vec3,
-    /// Radius within which the nodes of a soft body share the impulse [m]. If no node is within it, the
-    /// nearest node gets the whole impulse, which tears most bodies.
+    /// Radius within which the nodes of a soft body share the impulse [m]. If no node is within this radius,
+    /// the nearest node gets the whole impulse, which tears most bodies.
     pub radius: f32,
 }
 
@@ -140,7 +140,8 @@ impl<D: Dimension> From<VoxelGrid<D>> for SoftBody<D> {
     }
 }
 
-/// Accepts the result of building a grid. An error is kept and reported when the body would enter the world.
+/// Accepts the result of building a grid. An error in the result is reported when the body would enter the
+/// world.
 impl<D: Dimension> From<Result<VoxelGrid<D>, Error>> for SoftBody<D> {
     fn from(grid: Result<VoxelGrid<D>, Error>) -> Self {
         Self {

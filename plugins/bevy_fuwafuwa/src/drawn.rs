@@ -16,7 +16,7 @@ pub struct BodyMesh<D: Dimension> {
     mesh: Handle<Mesh>,
     colours: SoftColours,
     surface: D::Surface,
-    /// Pose at the last write, if the whole body slept then; otherwise `None`.
+    /// Pose at the last write of the mesh if the whole body slept then; otherwise `None`.
     asleep_at: Option<Pose>,
 }
 
@@ -53,7 +53,7 @@ impl<D: Dimension> BodyMesh<D> {
         }
         self.asleep_at = is_asleep.then_some(*pose);
         let Some(mut mesh) = meshes.get_mut(&self.mesh) else {
-            // The mesh asset was removed.
+            // Nothing is written if the mesh asset was removed.
             return;
         };
         let is_new = self.surface.follow(body, &self.colours);

@@ -27,7 +27,7 @@ enum Entry {
     Entered,
     /// The asset is still loading.
     Waits,
-    /// The component or the entity no longer exists, or the request was to remove a body.
+    /// The body was removed, or was not added because its component or its entity no longer exists.
     Left,
 }
 
@@ -43,7 +43,8 @@ pub fn enter_and_leave<D: Dimension>(world: &mut World) {
             Request::AddBody => add_body::<D>(world, entity),
             Request::AddRigid => add_rigid::<D>(world, entity),
             Request::RemoveBody => {
-                // A body that is removed before its asset is loaded no longer waits for the asset.
+                // A body that is removed before its asset is loaded must not enter later, so its request to
+                // enter is dropped.
                 waiting.retain(|request| *request != (entity, Request::AddBody));
                 remove_body::<D>(world, entity)
             }
@@ -115,7 +116,8 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
     Ok(Entry::Entered)
 }
 
-/// Returns the materials of a body. The last one is repeated until each material number of the grid has one.
+/// Returns the materials of a body. The last material is repeated until each material number of the grid has
+/// one.
 fn materials_of<D: Dimension>(world: &World, entity: Entity, grid: &VoxelGrid<D>) -> Vec<Material> {
     let materials = world.get::<SoftMaterials>(entity).cloned();
     let SoftMaterials(mut materials) = materials.unwrap_or_default();
@@ -147,7 +149,7 @@ fn find_voxels<D: Dimension>(
 }
 
 /// Gives a new body a mesh, if the app has meshes and the entity is not marked [`WithoutMesh`]. A body that
-/// replaces another reuses its mesh.
+/// replaces the previous body of its entity reuses the mesh of that body.
 fn show<D: Dimension>(world: &mut World, entity: Entity, of_file: Vec<[f32; 3]>) {
     let is_shown = world.get::<WithoutMesh>(entity).is_none();
     let mut usual = SoftColours::default();
@@ -225,7 +227,7 @@ fn middle_of<D: Dimension>(shape: &Shape<D>, motion_type: MotionType) -> D::Vect
 fn remove_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Problem> {
     // Ignores the error if the body was already removed through the engine.
     let _ = world.resource_mut::<SoftWorld<D>>().remove_body(entity);
-    // The entity may still exist and may have a new body.
+    // Removes the components of the old body. The entity may already be despawned, or may have a new body.
     if let Ok(mut entity) = world.get_entity_mut(entity) {
         entity.remove::<(SoftBodyId, LastWritten)>();
         if !entity.contains::<SoftBody<D>>() {

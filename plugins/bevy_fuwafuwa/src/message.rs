@@ -9,7 +9,7 @@ use bevy_ecs::message::Message;
 use bevy_math::Vec3;
 use fuwafuwa::{JointHandle, KnifeHandle, PieceId};
 
-/// A node was split, so that a crack grew.
+/// A node of the mesh was split into two, so that a crack grew.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct NodeSplit {
     /// The soft body.
@@ -37,7 +37,8 @@ pub struct ContactForce {
     pub body: Entity,
     /// Piece of `body`; `None` for a rigid body.
     pub piece: Option<PieceId>,
-    /// The other body: rigid, soft, or `body` itself if it touches itself. `None` if it has no entity.
+    /// The other body: rigid, soft, or equal to `body` if that body touches itself. `None` if the other body
+    /// has no entity.
     pub other: Option<Entity>,
     /// Piece of `other` if it is a soft body.
     pub other_piece: Option<PieceId>,
@@ -54,7 +55,7 @@ pub struct ContactForce {
 pub struct ContactStarted {
     /// The two bodies.
     pub pair: [Entity; 2],
-    /// Their pieces; `None` for a rigid body.
+    /// Pieces of the two bodies, in the order of `pair`; `None` for a rigid body.
     pub pieces: [Option<PieceId>; 2],
     /// Position of the strongest contact, world space [m].
     pub point: Vec3,
@@ -64,13 +65,13 @@ pub struct ContactStarted {
     pub speed: f32,
 }
 
-/// A contact between two bodies ended. A resting contact does not end. Not sent if one of the bodies was
-/// despawned.
+/// A contact between two bodies ended. A contact at rest does not end. The message is not sent if one of the
+/// bodies was despawned.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct ContactEnded {
     /// The two bodies.
     pub pair: [Entity; 2],
-    /// Their pieces; `None` for a rigid body.
+    /// Pieces of the two bodies, in the order of `pair`; `None` for a rigid body.
     pub pieces: [Option<PieceId>; 2],
 }
 
@@ -81,18 +82,18 @@ pub struct SensorEntered {
     pub sensor: Entity,
     /// The body that entered.
     pub entity: Entity,
-    /// Its piece; `None` for a rigid body.
+    /// Piece of `entity` that entered; `None` for a rigid body.
     pub piece: Option<PieceId>,
 }
 
-/// A body left a sensor. Not sent if one of the two was despawned.
+/// A body left a sensor. The message is not sent if the body or the sensor was despawned.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct SensorExited {
     /// The sensor.
     pub sensor: Entity,
     /// The body that left.
     pub entity: Entity,
-    /// Its piece; `None` for a rigid body.
+    /// Piece of `entity` that left; `None` for a rigid body.
     pub piece: Option<PieceId>,
 }
 
@@ -118,8 +119,8 @@ pub struct Cut {
     pub work: f32,
 }
 
-/// A piece, a soft body or a rigid body was removed through the engine. Sent in the next tick; the entity
-/// stays.
+/// A piece, a soft body or a rigid body was removed through the engine. The message is sent in the next tick;
+/// the entity is not despawned.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Removed {
     /// The soft or rigid body.
@@ -160,6 +161,6 @@ pub struct Quarantined {
 pub struct Rejection {
     /// Entity that made the request; `None` for a changed configuration.
     pub entity: Option<Entity>,
-    /// Reason.
+    /// Reason why the request was ignored.
     pub problem: Problem,
 }

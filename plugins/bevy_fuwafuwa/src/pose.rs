@@ -7,8 +7,8 @@ use bevy_math::{Mat3, Quat, Vec3};
 use bevy_transform::components::Transform;
 use fuwafuwa::{Dim, DimVector, NodeId, Shape, SoftBody, VoxelGrid};
 
-/// Maximum number of iterations for the rotation. If it changed little since the last tick, one or two
-/// suffice.
+/// Maximum number of iterations that determine the rotation of a body. If the rotation changed little since
+/// the last tick, one or two suffice.
 const ROUNDS: usize = 20;
 /// Convergence tolerance of the rotation [rad].
 const NEAR: f32 = 1e-6;
@@ -30,7 +30,7 @@ pub struct Motion {
 }
 
 impl Pose {
-    /// Converts a transform, or returns the reason why it is invalid for a body.
+    /// Converts a transform to a pose. Returns the reason if the transform is invalid for a body.
     pub fn of(transform: &Transform) -> Result<Self, Problem> {
         let Transform {
             translation,
@@ -125,7 +125,8 @@ pub fn motion_of<D: Dim>(body: &SoftBody<D>, before: Pose) -> Motion {
     for (id, _) in nodes() {
         masses[pieces.of_node(id).index()] += body.node_state(id).2;
     }
-    // The first of the largest pieces, so that the result does not alternate between two equal halves.
+    // Selects the first of several pieces with the largest mass, so that the result does not alternate
+    // between two equal halves.
     let most = masses.iter().fold(0.0f32, |most, &mass| most.max(mass));
     let largest = masses.iter().position(|&mass| mass == most).unwrap_or(0);
 
@@ -184,14 +185,15 @@ fn nearest_rotation(moment: Mat3, before: Quat) -> Quat {
         if !angle.is_finite() || angle < NEAR {
             break;
         }
-        // Limits the step to about a quarter turn, so that it does not overshoot.
+        // Limits the rotation of one iteration to about a quarter turn, so that the iteration does not
+        // overshoot.
         let by = Quat::from_axis_angle(turn / angle, angle.min(1.5));
         rotation = (by * rotation).normalize();
     }
     rotation
 }
 
-/// Returns the velocity of a whole body; zero where the result is not finite.
+/// Returns the velocity of a whole body; zero for components that are not finite.
 fn velocity_of<D: Dim>(body: &SoftBody<D>) -> Velocity {
     let centre = bevy_vector(body.centre_of_mass());
     let (mut mass, mut linear, mut spin) = (0.0, Vec3::ZERO, Vec3::ZERO);

@@ -63,8 +63,8 @@ pub fn push_bodies<D: Dimension>(
         let mut before = followed.velocity;
         if !followed.is_at(&transform) {
             match displace(&mut world, id, &transform, &mut followed) {
-                // The engine has rotated the velocity together with the body. The user did not request that,
-                // so the code below subtracts the difference.
+                // The engine has rotated the velocity together with the body. Rotating `before` as well makes
+                // the code below undo this, because the user did not request it.
                 Ok(turn) => {
                     before.linear = turn * before.linear;
                     before.angular = turn * before.angular;
@@ -128,7 +128,8 @@ fn displace<D: Dimension>(
     if by != D::Vector::ZERO {
         engine.translate(id, by)?;
     }
-    // The body is only rotated if the user changed the rotation; otherwise rounding errors would accumulate.
+    // The body is rotated only if the user changed the rotation; an unnecessary rotation in each tick would
+    // add up rounding errors.
     let mut turn = Quat::IDENTITY;
     if transform.rotation == followed.transform.rotation {
         to.rotation = from.rotation;

@@ -19,7 +19,7 @@ pub struct SoftQueries<'w, D: Dimension> {
 /// Result of a query.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct QueryHit {
-    /// Entity of the hit body; `None` if the body has none.
+    /// Entity of the hit body; `None` if this body has no entity.
     pub entity: Option<Entity>,
     /// Piece of a soft body; `None` for a rigid body.
     pub piece: Option<PieceId>,
@@ -47,7 +47,7 @@ impl<D: Dimension> SoftQueries<'_, D> {
     }
 
     /// Returns the closest point of any surface within `max_distance` [m], also for a point inside a body.
-    /// `None` if there is none.
+    /// Returns `None` if no surface is that close.
     pub fn closest_point(
         &self,
         point: Vec3,
@@ -76,7 +76,7 @@ impl<D: Dimension> SoftQueries<'_, D> {
         Ok(entities)
     }
 
-    /// Returns the entity of an object of the engine; `None` if it has none.
+    /// Returns the entity of an object of the engine; `None` if the object has no entity.
     pub fn entity(&self, object: ObjectRef) -> Option<Entity> {
         match object {
             ObjectRef::RigidBody(rigid) => self.world.entity_of_rigid_body(rigid),

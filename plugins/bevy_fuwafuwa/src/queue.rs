@@ -13,7 +13,7 @@ pub struct Queue<D: Dim> {
     dim: PhantomData<D>,
 }
 
-/// Request of an entity.
+/// Request of an entity to add or remove its body.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Request {
     AddBody,
@@ -30,8 +30,8 @@ impl<D: Dim> Default for Queue<D> {
 }
 
 impl<D: Dim> Queue<D> {
-    /// Calls `ask` with the queue of a Bevy world. Does nothing if the world has no queue, that is, without
-    /// the plugin.
+    /// Calls `ask` with the queue of a Bevy world. Does nothing if this world has no queue, because the
+    /// plugin was not added.
     pub fn of(world: &mut DeferredWorld<'_>, ask: impl FnOnce(&mut Self)) {
         if let Some(mut queue) = world.get_resource_mut::<Self>() {
             ask(&mut queue);

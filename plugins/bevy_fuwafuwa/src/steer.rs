@@ -53,7 +53,8 @@ pub fn steer_rigids<D: Dimension>(
         };
         if !followed.is_at(&transform) {
             if check(put(&mut world, id, &transform, &followed)) {
-                // Forgets the target position, so that it is sent to the engine again after the move.
+                // Clears the target position last sent to the engine, so that the code below sends it again
+                // after the move.
                 (followed.transform, followed.target) = (*transform, None);
             } else {
                 *transform = followed.transform;
@@ -67,7 +68,7 @@ pub fn steer_rigids<D: Dimension>(
                 let outcome = engine.set_target_position(id, engine_vector(target));
                 check(outcome.map_err(Problem::from));
             }
-            // Also set on failure, so that the error is reported only once.
+            // The target is stored even if the engine rejected it, so that the error is reported only once.
             followed.target = target;
         }
         if let Some(mut velocity) = velocity
@@ -111,7 +112,8 @@ fn put<D: Dimension>(
         engine.set_target_rotation(id, rotation)?;
         return Ok(());
     }
-    // The body is only rotated if the user changed the rotation; otherwise rounding errors would accumulate.
+    // The body is rotated only if the user changed the rotation; an unnecessary rotation in each tick would
+    // add up rounding errors.
     let is_turned = transform.rotation != followed.transform.rotation;
     let rotation = if is_turned {
         rotation

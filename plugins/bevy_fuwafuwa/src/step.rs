@@ -75,7 +75,7 @@ impl Writers<'_> {
                 self.piece_detached.write(PieceDetached { body, piece });
             }
             Event::ContactForce(contact) => {
-                // If the first body has no entity, the second one takes its place as `body`.
+                // If the first body of the contact has no entity, the message gives the second one as `body`.
                 let [first, second] = contact.pair.map(of);
                 let normal = bevy_vector(contact.normal);
                 let ((body, piece), other, normal) = match first {
@@ -166,7 +166,7 @@ impl Writers<'_> {
                 let body = of_body(body)?;
                 self.quarantined.write(Quarantined { body, piece });
             }
-            // Events that the engine adds later have no message yet.
+            // Ignores kinds of events that later versions of the engine add.
             _ => {}
         }
         Some(())

@@ -28,7 +28,7 @@ pub struct SoftWorld<D: Dimension> {
     is_paused: bool,
     single_ticks: u32,
     has_ticked: bool,
-    /// Number of events of the last tick already sent as messages.
+    /// Number of the engine's current events that were already sent as messages.
     sent: usize,
     report: StepReport,
 }
@@ -127,8 +127,8 @@ impl<D: Dimension> SoftWorld<D> {
         self.is_paused
     }
 
-    /// Requests a tick for the next run of the schedule while paused. Repeated calls request one tick in each
-    /// of the following runs.
+    /// Requests a single tick for the next run of the schedule while the simulation is paused. Repeated calls
+    /// request one tick in each of the following runs.
     pub fn step_once(&mut self) {
         self.single_ticks += 1;
     }
@@ -149,8 +149,8 @@ impl<D: Dimension> SoftWorld<D> {
         self.has_ticked
     }
 
-    /// Returns the events of direct calls of the engine since the last tick. They were not sent as messages
-    /// yet.
+    /// Returns the events that direct calls of the engine caused since the last tick. They were not sent as
+    /// messages yet.
     pub(crate) fn unsent_events(&self) -> Vec<Event<D>> {
         self.engine
             .events()
@@ -211,13 +211,13 @@ impl<D: Dimension> SoftWorld<D> {
         Ok(id)
     }
 
-    /// Removes the soft body of an entity. `None` if it has none.
+    /// Removes the soft body of an entity. Returns `None` if the entity has no soft body.
     pub(crate) fn remove_body(&mut self, entity: Entity) -> Option<Result<(), Error>> {
         let id = self.bodies.take(entity)?;
         Some(self.engine.remove(id).map(drop))
     }
 
-    /// Removes the rigid body of an entity. `None` if it has none.
+    /// Removes the rigid body of an entity. Returns `None` if the entity has no rigid body.
     pub(crate) fn remove_rigid(&mut self, entity: Entity) -> Option<Result<(), Error>> {
         let id = self.rigids.take(entity)?;
         Some(self.engine.remove(id).map(drop))

@@ -16,14 +16,14 @@ use bevy_mesh::Mesh;
 use bevy_transform::components::Transform;
 use fuwafuwa::MotionType;
 
-/// Component values that the plugin wrote last. A component with another value was changed by the user.
+/// Component values that the plugin wrote last. If a component has another value, the user has changed it.
 #[derive(Component, Copy, Clone, Debug)]
 pub struct LastWritten {
     pub pose: Pose,
     pub transform: Transform,
     pub velocity: Velocity,
     pub gravity: f32,
-    /// Position of the engine's origin of a rigid body in the frame of the entity [m].
+    /// Position of the engine's origin of a rigid body, in the frame of the entity [m].
     pub middle: Vec3,
     /// Target last sent to the engine, world space [m].
     pub target: Option<Vec3>,
@@ -49,8 +49,8 @@ impl LastWritten {
         }
     }
 
-    /// Returns whether a transform is bitwise equal to the last one. NaN is not equal to itself, so a
-    /// comparison of numbers would find a change in every tick.
+    /// Returns whether a transform is bitwise equal to the one written last. Bits are compared because NaN is
+    /// not equal to itself: a comparison of numbers would find a change in every tick.
     pub fn is_at(&self, transform: &Transform) -> bool {
         let bits = |transform: &Transform| {
             let (translation, scale) = (transform.translation, transform.scale);
@@ -100,7 +100,7 @@ pub fn write_bodies<D: Dimension>(
 }
 
 /// Writes the velocity of all moving rigid bodies, and the pose of coupled and dynamic ones. The transform of
-/// a kinematic body belongs to the user.
+/// a kinematic body is not written, because the user sets it.
 pub fn write_rigids<D: Dimension>(
     world: Res<SoftWorld<D>>,
     mut rigids: Query<

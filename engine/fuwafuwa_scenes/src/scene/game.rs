@@ -58,7 +58,8 @@ pub struct LocalizedText {
 pub struct WishText {
     /// Maximum time to win [s].
     pub seconds: Option<f32>,
-    /// Minimum share of the mass in the largest piece when the level is won, 0 to 1.
+    /// Minimum mass of the bodies' largest pieces when the level is won, as a share of that mass at the
+    /// start, 0 to 1.
     pub kept: Option<f32>,
     /// Minimum number of pieces when the level is won.
     pub pieces: Option<usize>,

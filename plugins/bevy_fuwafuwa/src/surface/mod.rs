@@ -19,7 +19,7 @@ pub struct Vertex {
 
 /// Triangulated surface that follows a body.
 pub trait Surface<D: Dim>: Default + Send + Sync + 'static {
-    /// Updates the surface to a body. Returns whether triangles or colours changed.
+    /// Updates the surface to the current state of a body. Returns whether triangles or colours changed.
     fn follow(&mut self, body: &SoftBody<D>, colours: &SoftColours) -> bool;
 
     /// Returns the vertices; `None` for unused slots.
@@ -32,7 +32,8 @@ pub trait Surface<D: Dim>: Default + Send + Sync + 'static {
     fn indices(&self) -> impl Iterator<Item = u32>;
 }
 
-/// Returns the colour of a material, linear RGBA. `is_fresh` mixes it with the colour of fresh crack faces.
+/// Returns the colour of a material, linear RGBA. If `is_fresh`, the colour is mixed with that of fresh crack
+/// faces.
 fn light_of(colours: &SoftColours, material: u8, is_fresh: bool) -> [f32; 4] {
     let count = colours.materials.len().max(1);
     let place = usize::from(material.max(1) - 1) % count;

@@ -29,7 +29,7 @@ const ROUNDS: [f32; 6] = [0.5, -0.5, 0.5, -0.5, 0.5, -0.5];
 const NONE: u32 = u32::MAX;
 /// Bit mask of the bare faces of a voxel without neighbours.
 const ALL_SIDES: u8 = 0b1111;
-/// Slots on the border of an element, counterclockwise, beginning with the middle of an edge.
+/// Slots of the nodes on the border of an element, counterclockwise, beginning with the middle of an edge.
 const AROUND: [usize; 8] = [1, 2, 5, 8, 7, 6, 3, 0];
 
 /// Triangles of a 2D body.
@@ -37,11 +37,11 @@ const AROUND: [usize; 8] = [1, 2, 5, 8, 7, 6, 3, 0];
 pub struct PlaneSurface {
     vertices: Pool<VertexSource>,
     triangles: Pool<[u32; 3]>,
-    /// Triangles, vertices and sides of each element.
+    /// Triangles, vertices and outline sides of each element.
     forms: IndexVec<ElementId, Form>,
     /// Vertex of each node, or `NONE`.
     of_node: IndexVec<NodeId, u32>,
-    /// Side of the outline that begins (`next`) or ends (`last`) at each node.
+    /// Side of the outline that begins at each node; `last` has the side that ends there.
     next: IndexVec<NodeId, OutlineEdge>,
     last: IndexVec<NodeId, OutlineEdge>,
     /// Smoothing of the stair steps in the rest shape.
@@ -58,11 +58,11 @@ struct VertexSource {
     material: u8,
 }
 
-/// Triangles, vertices and sides of an element.
+/// Triangles, vertices and outline sides of an element.
 #[derive(Clone, Debug, Default)]
 struct Form {
     triangles: Vec<u32>,
-    /// Vertices without a node of their own.
+    /// Vertices that lie at the mean of several nodes instead of at a node.
     means: Vec<u32>,
     sides: Vec<[NodeId; 2]>,
 }
@@ -70,12 +70,12 @@ struct Form {
 /// Side of the outline, as stored at the node at one of its ends.
 #[derive(Copy, Clone, Debug)]
 struct OutlineEdge {
-    /// Vertex at the other end, or `NONE`.
+    /// Vertex at the other end of the side, or `NONE`.
     to: u32,
     is_fresh: bool,
-    /// Smoothing offset of this end [voxels], in the frame of the voxel.
+    /// Smoothing offset at the node that stores this value [voxels], in the frame of the voxel.
     offset: Vec2,
-    /// Corner nodes of the voxel.
+    /// Corner nodes of the voxel to which the side belongs.
     corners: [NodeId; 4],
 }
 
@@ -90,7 +90,7 @@ impl Surface<Dim2> for PlaneSurface {
     fn follow(&mut self, body: &SoftBody<Dim2>, _: &SoftColours) -> bool {
         let changes = body.changes_since(&mut self.followed);
         let changes = changes.unwrap_or_else(|| {
-            // First call, or more changes than the body remembers: rebuilds everything.
+            // Rebuilds everything in the first call, or if the body had more changes than it stores.
             let rest = std::mem::take(&mut self.rest);
             *self = Self {
                 followed: self.followed,
@@ -307,8 +307,8 @@ fn squares(children: u8) -> Vec<Vec<usize>> {
     left.map(square).collect()
 }
 
-/// Returns the nodes whose mean is the position of a slot without a node: the ends of its edge, or, for the
-/// centre, the midpoints of the edges around it.
+/// Returns the nodes whose mean is the position of a slot without a node. These are the ends of its edge or,
+/// for the centre of the element, the midpoints of the edges around it.
 fn mean_of(slot: usize, nodes: &[Option<NodeId>; 9]) -> Option<[NodeId; 8]> {
     let halves = |slot: usize, axis: usize| {
         [0, 2].map(|end| {

@@ -20,8 +20,8 @@ use fuwafuwa_render::space::skin::SkinVertex;
 /// Size of a drawn crumb relative to its voxel. Together with rounded shading, the smaller box looks like a
 /// grain.
 const CRUMB: f32 = 0.85;
-/// Threshold of the fourth component of `SkinVertex::other`, 0 to 255. Above it a vertex is drawn in the
-/// colour of the other material.
+/// Threshold of the fourth component of `SkinVertex::other`, 0 to 255. A vertex above this threshold is drawn
+/// in the colour of the material beyond the nearest border.
 const BORDER: u8 = 128;
 
 /// Surface of a 3D body.

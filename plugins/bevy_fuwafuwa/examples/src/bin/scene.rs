@@ -1,9 +1,9 @@
-//! Soft bodies on a table, one of them with a face, a tower of wooden boxes, and a hand that presses through
-//! the face. The detached pieces hit the tower. The arrow keys move the hand, and Q and Z raise and lower it.
-//! Before the first key press, the hand moves by itself.
+//! Soft bodies on a table, a tower of wooden boxes, and a hand. One soft body has eyes and a mouth, through
+//! which the hand presses. The detached pieces hit the tower. The arrow keys move the hand, and Q and Z raise
+//! and lower it. Before the first key press, the hand moves by itself.
 //!
 //! Run it with `cargo run -p bevy_fuwafuwa_examples --bin scene`, in `plugins/bevy_fuwafuwa`. With `--
-//! FOLDER` at the end it saves pictures of some moments in the folder, at maximum speed, and exits.
+//! FOLDER` at the end, the program saves pictures of some moments in the folder, at maximum speed, and exits.
 
 use bevy::asset::RenderAssetUsages;
 use bevy::core_pipeline::tonemapping::Tonemapping;
@@ -26,16 +26,16 @@ const START: u32 = 120;
 /// Start position of the hand [m].
 const HAND: Vec3 = Vec3::new(0.02, 1.5, 0.0);
 const HAND_RADIUS: f32 = 0.16;
-/// Position of the tower and width of a box [m].
+/// Position of the tower [m]; the constant below is the width of one of its boxes [m].
 const TOWER: Vec3 = Vec3::new(0.36, 0.0, 0.26);
 const BOX: f32 = 0.18;
-/// Texture width of a box side [pixels].
+/// Width of the texture on one side of a wooden box [pixels].
 const PIXELS: u32 = 128;
 
 #[derive(Component)]
 struct Hand;
 
-/// Output folder of the pictures, and the number of frames so far.
+/// Output folder of the pictures, and the number of frames drawn so far.
 #[derive(Resource)]
 struct Album(PathBuf, u32);
 
@@ -151,8 +151,8 @@ fn put_bodies(
         ..default()
     };
     let tough = firm(8000.0);
-    // Entities that are children of a soft body follow it, here the eyes and the mouth. The parent needs
-    // `Visibility` before its mesh exists.
+    // Entities that are children of a soft body move with the body, here the eyes and the mouth. The parent
+    // needs `Visibility` before its mesh exists.
     let ball = (SoftBody3d::ball(28, 1.1), SoftMaterials::from(firm(2600.0)));
     commands
         .spawn((
@@ -240,7 +240,7 @@ fn wood() -> Image {
         let [x, y] = [index % PIXELS, index / PIXELS].map(|k| k as f32 / PIXELS as f32);
         let edge = x.min(y).min(1.0 - x).min(1.0 - y);
         let is_frame = edge < 0.13;
-        // Coordinates along and across a board.
+        // Boards of the frame run upright at the left and right sides of the texture.
         let is_upright = is_frame && x.min(1.0 - x) < y.min(1.0 - y);
         let (along, across) = if is_upright { (y, x) } else { (x, y) };
         let board = (across * 4.0).floor();
@@ -326,7 +326,8 @@ fn take_pictures(
             .spawn(Screenshot::primary_window())
             .observe(save_to_disk(file));
     }
-    // A screenshot is saved some frames after its request.
+    // Exits only 20 ticks after the last picture, because a screenshot is saved some frames after its
+    // request.
     if tick > MOMENTS[MOMENTS.len() - 1] + 20 {
         exit.write(AppExit::Success);
     }
