@@ -32,7 +32,7 @@ fn app_with<D: Dimension>(files: &[(&str, Vec<u8>)]) -> App {
     app
 }
 
-/// Runs the app until the body of an entity has entered or was rejected.
+/// Runs the app until the body of an entity has entered the world or was rejected.
 fn settle<D: Dimension>(app: &mut App, entity: Entity) {
     let late = Instant::now() + Duration::from_secs(60);
     while world::<D>(app).soft_body_of(entity).is_none()

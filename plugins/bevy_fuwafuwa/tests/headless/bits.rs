@@ -71,7 +71,7 @@ fn writeback_does_not_change_the_hash() {
     let ball = app.world_mut().spawn(ball).id();
     app.world_mut().spawn(RigidBody2d::floor());
     run(&mut app, 20);
-    // Writing a component without changing its value requests nothing.
+    // Inserting a component again with the same value must not change the simulation.
     let same = super::transform(&app, ball);
     app.world_mut().entity_mut(ball).insert(same);
     run(&mut app, 20);

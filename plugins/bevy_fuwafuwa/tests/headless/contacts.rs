@@ -36,7 +36,7 @@ fn falling_box_passes_a_sensor_and_starts_one_contact_with_the_floor() {
     }
     assert_eq!((entered, exited), (vec![free], vec![free]));
     assert_eq!((started.len(), ended), (1, 0), "{started:?}");
-    // Bodies are in the order in which they entered: the floor was first.
+    // The pair lists bodies in the order in which they entered the world, so the floor comes first.
     assert_eq!(started[0].pair, [floor, free]);
     assert!(
         (5.5..6.6).contains(&started[0].speed),

@@ -50,7 +50,8 @@ fn body_leaves_the_world_when_despawned_or_its_component_is_removed() {
     let entity = app.world().entity(high);
     assert!(!entity.contains::<SoftBodyId>() && !entity.contains::<Mesh2d>());
 
-    // A body despawned before the tick never enters. A body inserted again is replaced.
+    // A body despawned before the tick never enters the world. A body component inserted again replaces the
+    // body.
     let brief = ball(&mut app, 9.0);
     app.world_mut().despawn(brief);
     app.world_mut()
@@ -139,7 +140,7 @@ fn knife_cuts_and_engine_removals_send_messages() {
     app.update();
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     let engine = world.engine_mut();
-    // As a sensor the hand passes through the body; only the edge touches it.
+    // The hand is a sensor and passes through the body, so only the edge of its knife touches the body.
     let hand = RigidBody::coupled(Shape::ball(0.05))
         .at(Vec2::new(0.03, 1.2))
         .with_sensor(true);

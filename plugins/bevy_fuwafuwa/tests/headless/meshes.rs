@@ -66,8 +66,8 @@ fn disc_mesh_has_a_vertex_per_node_and_keeps_its_buffers() {
         .id();
     run(&mut app, 2);
     let own = body::<Dim2>(&app, ball).mesh();
-    // An element that fills only a part of its cell has corners without a node. Each such corner has a vertex
-    // of its own.
+    // An element that fills only a part of its cell has corners without a node. The mesh has a separate
+    // vertex at each such corner.
     let parts = own
         .elements()
         .filter(|(_, element)| element.children != Dim2::ALL_CORNERS);
@@ -85,7 +85,7 @@ fn disc_mesh_has_a_vertex_per_node_and_keeps_its_buffers() {
     let before = positions(mesh(&app, ball)).to_vec();
     run(&mut app, 30);
     assert_eq!(positions(mesh(&app, ball)).as_ptr(), buffer);
-    // The transform falls with the ball, so the mesh, which is relative to it, does not change.
+    // The transform falls with the ball, so the vertices, which are relative to the transform, do not change.
     assert!(transform(&app, ball).translation.y < 8.5);
     let after = positions(mesh(&app, ball));
     let moved = before
@@ -123,7 +123,8 @@ fn disc_mesh_updated_after_cuts_equals_a_rebuilt_mesh() {
             followed.len(),
             anew.len()
         );
-        // The outline along a crack is smoothed inwards, which takes away less than a voxel on both sides.
+        // Smoothing moves the outline inwards along a crack, so the drawn area shrinks by less than one voxel
+        // on both sides of the crack.
         assert!(
             (area(&now) / (0.25 * std::f32::consts::PI) - 0.93).abs() < 0.06,
             "{}",
@@ -137,7 +138,7 @@ fn rounded(value: f32) -> i32 {
     (value * 1e5).round() as i32
 }
 
-/// Rotates the corners of a triangle so that the smallest comes first, to make triangles comparable.
+/// Rotates the corners of a triangle so that the smallest corner comes first, to make triangles comparable.
 fn first_first([a, b, c]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
     [[a, b, c], [b, c, a], [c, a, b]]
         .into_iter()
@@ -145,12 +146,12 @@ fn first_first([a, b, c]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
         .expect("there are three")
 }
 
-/// Returns the mesh after a complete rebuild.
+/// Returns the mesh of a body after a complete rebuild.
 fn of_new_reader(app: &mut bevy_app::App, ball: Entity) -> Mesh {
     let mut world = app.world_mut().resource_mut::<SoftWorld<Dim2>>();
     world.pause();
     let id = world.soft_body_of(ball).expect("the body has entered");
-    // Access for changes makes all readers of the body rebuild.
+    // A call of `soft_body_mut` makes everything that follows changes of the body rebuild, such as its mesh.
     assert!(world.engine_mut().soft_body_mut(id).is_ok());
     app.update();
     app.world_mut().resource_mut::<SoftWorld<Dim2>>().resume();
@@ -228,7 +229,7 @@ fn mesh_is_written_once_a_tick_and_never_while_asleep() {
             .all(|piece| piece.asleep)
     );
     assert_eq!(writes(&app), 0);
-    // A sleeping body that is moved is drawn at its new position.
+    // A sleeping body that the user moves is drawn at its new position.
     app.world_mut().entity_mut(cube).insert(at(2.0, 2.0));
     run(&mut app, 2);
     assert_eq!(writes(&app), 1);

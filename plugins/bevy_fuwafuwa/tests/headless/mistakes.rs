@@ -173,7 +173,7 @@ fn rigid_body_is_unchanged_after_an_invalid_request() {
     assert_eq!(transform(&app, wall), there);
 }
 
-/// Invalid request for a body.
+/// Invalid value of a component of a body.
 enum Bad {
     Place(Transform),
     Velocity(Velocity),

@@ -62,7 +62,7 @@ fn transform_places_a_new_body_and_then_follows_it() {
         .spawn((SoftBody3d::from(grid), pose, spin))
         .id();
     app.update();
-    // With scale 0.5 the stick is 1 m long and 0.5 m thick.
+    // With scale 0.5, the stick is 1 m long and 0.5 m wide and thick, so its volume is 0.25 m³.
     let volume = body::<Dim3>(&app, stick).total_mass() / 100.0;
     assert!((volume - 0.25).abs() < 1e-4, "{volume}");
     run(&mut app, 59);

@@ -132,7 +132,7 @@ fn fixed_body_is_rotated_by_its_transform() {
         "the ball does not roll down: {down}"
     );
     let before = app.world().get::<RigidBodyId>(slope).copied();
-    // The slope is rotated until the ball falls past it. The slope keeps its id.
+    // The test rotates the slope until the ball falls past it. The slope keeps its handle in the engine.
     let upright = at(0.0, 0.0).with_rotation(Quat::from_rotation_z(1.5));
     app.world_mut().entity_mut(slope).insert(upright);
     run(&mut app, 60);
@@ -171,7 +171,8 @@ fn rotating_kinematic_table_carries_a_box() {
 #[test]
 fn written_transform_moves_the_body_at_once() {
     let mut app = weightless::<Dim3>();
-    // The middle of the box is 1 m from the origin of the entity, about which the transform rotates it.
+    // The middle of the box is 1 m from the origin of the entity, and the transform rotates the box about
+    // that origin.
     let shape = block().translated(glam::Vec3::X);
     let spin = Velocity {
         linear: Vec3::Y,
@@ -194,7 +195,8 @@ fn written_transform_moves_the_body_at_once() {
     let velocity = bevy_vector(rigid::<Dim3>(&app, thrown).velocity().linear);
     assert!(velocity.distance(Vec3::Y) < 1e-3, "{velocity}");
 
-    // Writing the transform also moves a coupled body at once. Then the body is pulled back to its target.
+    // Writing the transform also moves a coupled body at once. Afterwards the body is pulled back to its
+    // target.
     let hand = RigidBody3d::kinematic_ball(0.1).with_motion_type(MotionType::default());
     let hand = spawn(
         &mut app,
@@ -288,7 +290,7 @@ fn box_falls_when_its_support_is_despawned() {
     assert_eq!(world::<Dim2>(&app).engine().rigid_bodies().count(), 1);
 }
 
-/// Returns the initial angle of box `n` [rad].
+/// Returns the initial rotation angle of box `n` [rad].
 fn askew(n: usize) -> f32 {
     0.1 * n as f32
 }
