@@ -102,7 +102,8 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
         outcome = outcome.and_then(|()| engine.set_gravity_scale(id, scale));
     }
     if let Err(refused) = outcome {
-        // The body was added a moment ago, so nothing is in contact with it and no message refers to it.
+        // The body is removed without further messages, because nothing can have touched it since it was
+        // added above.
         soft_world.remove_body(entity);
         return Err(refused.into());
     }

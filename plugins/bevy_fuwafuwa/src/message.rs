@@ -33,7 +33,7 @@ pub struct PieceDetached {
 /// [`Contact::pair`](fuwafuwa::Contact::pair) of the engine.
 #[derive(Message, Copy, Clone, Debug, PartialEq)]
 pub struct ContactForce {
-    /// The first body, or the second one if the first has no entity.
+    /// The first body of the contact, or the second body if the first one has no entity.
     pub body: Entity,
     /// Piece of `body`; `None` for a rigid body.
     pub piece: Option<PieceId>,

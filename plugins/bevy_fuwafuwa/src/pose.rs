@@ -193,7 +193,7 @@ fn nearest_rotation(moment: Mat3, before: Quat) -> Quat {
     rotation
 }
 
-/// Returns the velocity of a whole body; zero for components that are not finite.
+/// Returns the velocity of a whole body. A linear or angular velocity that is not finite is replaced by zero.
 fn velocity_of<D: Dim>(body: &SoftBody<D>) -> Velocity {
     let centre = bevy_vector(body.centre_of_mass());
     let (mut mass, mut linear, mut spin) = (0.0, Vec3::ZERO, Vec3::ZERO);

@@ -19,7 +19,7 @@ pub const REACH: f32 = 2.6;
 /// device requires.
 const STRIDE: u64 = 256;
 
-/// Image of colour and coverage, and image of the relief.
+/// Image of colour and coverage, then image of the relief (thickness, freshness of torn surfaces, strain).
 type Pair = [TextureView; 2];
 
 /// Intermediate images and the bind groups for drawing from one into the next.

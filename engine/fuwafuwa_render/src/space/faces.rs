@@ -1,9 +1,9 @@
 //! Bare (exposed) faces of a body, the surface points at their corners and the vertices drawn there.
 //!
 //! Faces belong to elements, points to nodes. [`Faces::update`] updates only what the body reports as changed
-//! since the last call. It checks everything for a body that was loaded or replaced. A point at the mouth of
-//! a crack, where the original surface meets the inside, has two vertices at the same position. Each has the
-//! normal and the colour of one of the surfaces.
+//! since the last call. For a body that was loaded or replaced, it updates everything. A point at the mouth
+//! of a crack, where the original surface meets the torn surface, has two vertices at the same position. Each
+//! of the two vertices has the normal and the colour of one of these surfaces.
 
 use super::pool::Pool;
 use super::rest::Rest;

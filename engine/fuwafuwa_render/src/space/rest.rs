@@ -10,7 +10,7 @@ use fuwafuwa::{Dim, Dim3, Point, VoxelGrid};
 use glam::Vec3;
 
 /// Variance of the smoothing [voxels²], as a multiple of the square root of the number of faces of the
-/// surface. The widest terraces of a voxelised ball grow by the same law.
+/// surface. The widest terraces of a voxelised ball grow with the same square root.
 const REACH: f32 = 0.45;
 /// Variance that one smoothing round adds on a flat surface [voxels²]. A round moves each point half-way to
 /// the mean of its four neighbours, two of which are one voxel away along each axis.

@@ -1,4 +1,5 @@
-//! Stickers as vertices. Every mark is a cushion on the deformed skin.
+//! Computes the vertices of stickers, such as a painted pair of eyes and a mouth. Every mark (coloured patch)
+//! of a sticker bulges from the deformed skin like a cushion.
 //!
 //! ```text
 //!        out            The skin is treated as a height field over the plane of the sticker. It is

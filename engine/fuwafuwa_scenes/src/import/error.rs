@@ -11,7 +11,7 @@ pub struct ImportError {
     pub file: String,
     /// Position in the file.
     pub position: FilePosition,
-    /// Problem at that position.
+    /// Problem that was found at `position`.
     pub problem: Problem,
 }
 

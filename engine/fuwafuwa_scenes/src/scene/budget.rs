@@ -8,11 +8,11 @@ pub(super) struct Budget {
     most_voxels: usize,
     /// Voxels, solid or empty, in the grids built so far.
     voxels: usize,
-    /// Distance evaluations: one for each part and voxel of a body.
+    /// Remaining distance evaluations: one for each part and voxel of a body.
     pub(super) distances: usize,
-    /// Plane tests: one for each cutting plane and voxel of a diced body.
+    /// Remaining plane tests: one for each cutting plane and voxel of a diced body.
     pub(super) plane_tests: usize,
-    /// Colour comparisons: one for each pixel and named colour of a picture.
+    /// Remaining colour comparisons: one for each pixel and named colour of a picture.
     pub(super) colour_comparisons: usize,
 }
 
@@ -29,14 +29,14 @@ impl Budget {
         }
     }
 
-    /// Subtracts `count` voxels from the budget.
+    /// Counts `count` more voxels. Returns an error if the scene would then have too many.
     pub(super) fn take_voxels(&mut self, count: usize) -> Result<(), FieldError> {
         self.check_voxels(count)?;
         self.voxels += count;
         Ok(())
     }
 
-    /// Checks that the budget has `count` voxels left.
+    /// Checks that `count` more voxels are within the limit of the scene.
     pub(super) fn check_voxels(&self, count: usize) -> Result<(), FieldError> {
         let (most, found) = (self.most_voxels, self.voxels.saturating_add(count));
         let expected = format!(

@@ -17,7 +17,7 @@ pub struct GameText {
     /// Share of the bodies' mass that must rest in the basket, above 0 and up to 1; default 0.6.
     #[serde(default = "usual_share")]
     pub share: f32,
-    /// Time for which this share of the mass must rest in the basket [s], 0 to 60; default 1.
+    /// Time for which `share` of the mass must rest in the basket [s], 0 to 60; default 1.
     #[serde(default = "usual_hold")]
     pub hold: f32,
     /// Routes by which the level can be won. If empty, all routes that its materials allow.
@@ -36,7 +36,7 @@ pub struct GameText {
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AssistText {
-    /// The bars stand further apart.
+    /// The bars of the basket stand farther apart.
     WiderBasket,
     /// Nothing tears.
     Unbreakable,

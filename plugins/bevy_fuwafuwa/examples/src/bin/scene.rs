@@ -26,7 +26,7 @@ const START: u32 = 120;
 /// Start position of the hand [m].
 const HAND: Vec3 = Vec3::new(0.02, 1.5, 0.0);
 const HAND_RADIUS: f32 = 0.16;
-/// Position of the tower [m]; the constant below is the width of one of its boxes [m].
+/// Position of the tower [m]; `BOX` is the width of one of its boxes [m].
 const TOWER: Vec3 = Vec3::new(0.36, 0.0, 0.26);
 const BOX: f32 = 0.18;
 /// Width of the texture on one side of a wooden box [pixels].
