@@ -30,8 +30,7 @@ const SPEEDS: [f32; 2] = [0.03, 0.01];
 /// starts in equilibrium. A notched bar starts with uniform strain, which then concentrates at the notch and
 /// overshoots. Its initial strain is low so that the overshoot does not break it.
 const STARTS: [f32; 2] = [0.85, 0.08];
-/// Position of the notch along the bar [m]. It is slightly beside a boundary between voxels, so that the
-/// boundary to cut is unambiguous.
+/// Position of the notch along the bar [m], slightly beside the boundary between voxels at 1 m.
 const NOTCH: f32 = 1.001;
 
 /// Compares loads of unnotched bars with strength × area, and loads of notched bars with each other.
