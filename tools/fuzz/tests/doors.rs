@@ -45,7 +45,8 @@ fn every_door_accepts_its_seeds() {
     }
 }
 
-/// Each file name begins with its door, for example `settings-one-bad-value-of-thousands`.
+/// Passes the files of the folder `found` through their doors. A file name begins with the name of the door,
+/// for example `settings-one-bad-value-of-thousands`.
 #[test]
 fn earlier_failures_are_handled_quickly() {
     for (name, bytes) in found() {
