@@ -37,7 +37,7 @@ const THINNEST: f32 = 1.5;
 const REACH: f32 = 0.004;
 /// Radius around the gripped point within which nodes are attached to the forceps [m].
 const JAW: f32 = 0.004;
-/// Force at which the forceps slip off [N].
+/// Pulling force at which gripped tissue slips out of the forceps [N].
 const SLIPS: f32 = 8.0;
 /// Size of the hook's bar [m]: half length and radius. [`THINNEST`] enlarges the radius for coarse organs.
 const BAR: [f32; 2] = [0.014, 0.0025];

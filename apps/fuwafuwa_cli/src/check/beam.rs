@@ -18,12 +18,12 @@ use fuwafuwa::{Dim, Dim2, Dim3, Grading, VoxelGrid};
 
 /// Thickness of a beam [voxels].
 const THICKNESS: usize = 16;
-/// Lengths of the beams [thicknesses].
+/// Lengths of the beams, as multiples of their thickness.
 const LENGTHS: [usize; 3] = [4, 6, 8];
 /// Maximum relative deviation of a graded beam's tip deflection from theory.
 const TOLERANCE: f64 = 0.02;
 
-/// Cantilever.
+/// Cantilever: a beam fixed at one end.
 #[derive(Copy, Clone, Debug)]
 struct Beam {
     dim: usize,

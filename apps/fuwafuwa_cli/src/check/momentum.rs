@@ -7,7 +7,7 @@ use crate::report::{Outcome, Progress};
 use anyhow::{Result, anyhow};
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Grading, Point, Vec3};
 
-/// Number of dimensions and voxels across for each body.
+/// Bodies in which nodes are released: number of dimensions and voxels across.
 const BODIES: [(usize, usize); 3] = [(2, 32), (3, 12), (3, 16)];
 /// Number of releases, each at a random point along a random axis.
 const RELEASES: usize = 1000;

@@ -10,13 +10,13 @@ use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Grading, NodeId, SoftBody, Vec3};
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
-/// Number of dimensions and voxels across for each body.
+/// Bodies that oscillate: number of dimensions and voxels across.
 const BODIES: [(usize, usize); 5] = [(2, 16), (2, 64), (3, 16), (2, 128), (3, 32)];
-/// Maximum relative deviation of the period from that of the uniform body.
+/// Maximum relative difference between the periods of a graded and a uniform body.
 const TOLERANCE: f64 = 0.03;
-/// Allowed range of the final energy relative to the initial one.
+/// Allowed range of the energy at the end, relative to the initial energy.
 const KEPT: RangeInclusive<f64> = 0.95..=1.02;
-/// Initial squash, as a fraction of the height.
+/// Initial squash of the body: relative reduction of its height.
 const SQUASH: f32 = 0.08;
 /// Simulated time [s].
 const DURATION: f64 = 5.0;

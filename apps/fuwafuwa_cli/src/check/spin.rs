@@ -10,7 +10,7 @@ use fuwafuwa::{
     SoftBodyHandle, Vec2, Vec3, World, WorldConfig,
 };
 
-/// Number of dimensions, voxels across, and damping, for each body.
+/// Bodies that spin uncut: number of dimensions, voxels across, and damping of the material.
 const BODIES: [(usize, usize, f32); 4] = [(2, 32, 0.0), (2, 32, 0.08), (3, 24, 0.0), (3, 24, 0.08)];
 /// Minimum angular momentum at the end, as a fraction of the initial one.
 const KEPT: f64 = 0.999;

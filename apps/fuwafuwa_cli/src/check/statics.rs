@@ -28,7 +28,7 @@ pub struct Statics {
 /// One element of the global stiffness operator.
 struct OperatorElement {
     class: u32,
-    /// Stiffness relative to that of its class.
+    /// Factor between the stiffness of the element and that of its class.
     scale: f64,
     /// Indices of the coordinates of the element's nodes in the global vectors.
     places: Vec<u32>,

@@ -33,7 +33,7 @@ const STARTS: [f32; 2] = [0.85, 0.08];
 /// Position of the notch along the bar [m], slightly beside the boundary between voxels at 1 m.
 const NOTCH: f32 = 1.001;
 
-/// Compares loads of unnotched bars with strength × area, and loads of notched bars with each other.
+/// Compares breaking loads. Unnotched bars must break at strength × area, notched bars at equal loads.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let loads = parallel::each(&BARS, progress, |&(dim, n, notched)| match dim {
         2 => load(n, notched.then(notch_line).as_ref()),

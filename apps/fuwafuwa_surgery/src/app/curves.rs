@@ -12,7 +12,7 @@ use fuwafuwa::DEFAULT_TICK;
 const SPAN: f32 = 20.0;
 const BLUE: Color32 = Color32::from_rgb(47, 111, 159);
 
-/// Plot of a quantity: name, unit and value.
+/// Plot of a measured quantity over time.
 struct Curve {
     name: &'static str,
     unit: &'static str,

@@ -8,7 +8,7 @@ use app_shell::{CameraRig, Clock, Pace};
 use fuwafuwa::Vec3;
 use std::sync::Arc;
 
-/// Ticks between two measurements of the volumes of the pieces.
+/// Number of ticks after which the volumes of the pieces are measured again.
 const LOOKS: usize = 20;
 /// Margins around the organ in the main view: to the sides, below and above, as fractions of the organ's
 /// size.
