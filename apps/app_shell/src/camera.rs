@@ -12,35 +12,40 @@ const MARGIN: f32 = 0.1;
 const LEAN: f32 = 0.03;
 /// Rate at which the lean approaches its goal [1/s].
 const PACE: f32 = 3.0;
-/// Decay rate of a shake [1/s]. Its angular frequency is [`SWING`] [rad/s].
+/// Decay rate of the camera's shake after a tear [1/s].
 const CALM: f32 = 9.0;
-/// 3D: initial elevation of the camera, and its lower and upper limit [rad]. Below the lower limit, the hand
-/// could be higher than the camera.
+/// 3D: initial elevation of the camera above the horizontal [rad].
 const RISE: f32 = 0.6;
+/// 3D: minimum elevation of the camera [rad]. Below this limit, the hand could be higher than the camera.
 const LOWEST: f32 = 0.35;
+/// 3D: maximum elevation of the camera [rad].
 const HIGHEST: f32 = 1.5;
-/// 3D: fraction of the camera distance at which the whole arena would be visible. Below 1 the camera is
-/// closer and may cut off the arena's corners, which are usually empty.
+/// 3D: camera distance, as a fraction of the distance at which the whole arena would be visible. A value
+/// below 1 cuts off the arena's corners, which are usually empty.
 const CLOSE: f32 = 0.66;
-/// 3D: distance of the camera's target below the centre of the arena [m], and its limit as a fraction of the
-/// arena's height. The target is low because bodies lie on the floor.
+/// 3D: distance of the camera's target below the centre of the arena [m]. The target is low because bodies
+/// lie on the floor.
 const LOWER: f32 = 0.12;
+/// 3D: upper limit of [`LOWER`], as a fraction of the arena's height.
 const LOWER_SHARE: f32 = 0.15;
-/// Rate at which the camera returns to its initial orientation [1/s].
+/// Rate at which the camera turns back to its initial orientation when the user resets it [1/s].
 const HOME: f32 = 7.0;
-/// Upper limit of the distance to a picked point [m], larger than any level.
+/// Maximum distance from the camera to the world point under the pointer [m], larger than any level.
 const FAR: f32 = 100.0;
+/// Angular frequency of the camera's shake after a tear [rad/s].
 const SWING: f32 = 60.0;
 
 /// Camera that frames the arena, leans towards the hand, and shakes when something tears.
 #[derive(Clone, Debug, Default)]
 pub struct CameraRig {
     lean: Vec2,
-    /// Amplitude of the shake [m] and its phase [rad].
+    /// Amplitude of the shake [m].
     shake: f32,
+    /// Phase of the shake [rad].
     phase: f32,
-    /// 3D: azimuth (positive to the right) and elevation, relative to the initial orientation [rad].
+    /// 3D: azimuth relative to the initial orientation, positive to the right [rad].
     turn: f32,
+    /// 3D: elevation relative to the initial orientation [rad].
     rise: f32,
     is_returning: bool,
 }
@@ -59,15 +64,15 @@ pub struct View {
 }
 
 impl CameraRig {
-    /// Advances by `seconds`, with the hand at `hand` [m]. `still` selects reduced motion: no lean, no shake,
-    /// and no animated return.
+    /// Advances the camera by `seconds`; `hand` is the position of the hand [m]. `still` selects reduced
+    /// motion: the camera neither leans nor shakes, and it returns to its initial orientation at once.
     pub fn follow(&mut self, hand: Vec3, arena: [Vec3; 2], seconds: f32, still: bool) {
         if self.is_returning {
             let left = match still {
                 true => 0.0,
                 false => (1.0 - HOME * seconds).max(0.0),
             };
-            // Takes the shorter way around.
+            // Reduces the azimuth by whole turns, so that the camera turns back the shorter way around.
             self.turn = left * (self.turn - TAU * (self.turn / TAU).round());
             self.rise *= left;
         }
@@ -165,7 +170,7 @@ impl CameraRig {
     }
 }
 
-/// Returns the size of `rect` as whole pixels.
+/// Returns the width and height of `rect`, rounded to whole pixels.
 fn pixels(rect: Rect) -> [u32; 2] {
     [rect.width().max(1.0) as u32, rect.height().max(1.0) as u32]
 }
@@ -198,7 +203,7 @@ impl View {
         if let Some(camera) = &self.space {
             let point = at - self.rect.min;
             let (eye, towards) = camera.ray([point.x, point.y], pixels(self.rect));
-            // A ray that does not hit the plane is cut at `FAR`.
+            // Limits the distance to `FAR` if the ray does not hit the plane.
             let reach = (height - eye.y) / towards.y;
             let reach = if reach > 0.0 { reach.min(FAR) } else { FAR };
             return (eye + towards * reach).with_y(height);
@@ -216,7 +221,8 @@ impl View {
         self.scale * camera.distance / away
     }
 
-    /// Returns this view as a plane through the camera's target, seen from the front.
+    /// Returns a 2D view with the same centre and scale: the plane through the camera's target, seen from the
+    /// front.
     pub fn flat(&self) -> Self {
         let space = None;
         Self { space, ..*self }
@@ -285,8 +291,8 @@ mod tests {
             let position = view.to_world(view.to_screen(at), at.y);
             assert!(position.distance(at) < 1e-2, "{position:?}");
         }
-        // At the lowest elevation, rays at the upper edge of the screen are nearly horizontal. Left and right
-        // must not be swapped, and the points must lie beyond the arena.
+        // At the camera's lowest elevation, rays at the upper edge of the screen are nearly horizontal. Their
+        // points must lie beyond the arena, and left and right must not be swapped.
         camera.face_front();
         camera.orbit(0.0, -9.0);
         let view = camera.view_of_space(rect, arena);

@@ -14,7 +14,7 @@ impl Clock {
         Self::of(move || start.elapsed().as_secs_f64())
     }
 
-    /// Returns a clock that calls `tell` for the time [s], for tests.
+    /// Returns a test clock that reads the time [s] from the function `tell`.
     pub fn of(tell: impl Fn() -> f64 + 'static) -> Self {
         Self(Rc::new(tell))
     }

@@ -12,7 +12,7 @@ const RATE: u32 = 250;
 #[derive(Default)]
 pub struct Forces {
     lines: BTreeMap<DeviceId, Line>,
-    /// Driver of all devices, usually a thread. `None` while there is no device.
+    /// Background driver that updates all devices, usually a thread. `None` until the first device is found.
     force: Option<ForceThread>,
     is_cut: bool,
 }
@@ -44,8 +44,9 @@ impl Forces {
         }
     }
 
-    /// Returns the driver and starts it if necessary. `None` if the system cannot start a thread; then there
-    /// is no feedback. In a browser the driver has no thread and needs [`Self::update`].
+    /// Returns the driver of the devices and starts it if necessary. `None` if the system cannot start a
+    /// thread; no device then gets feedback. In a browser the driver has no thread, so the caller runs it
+    /// with [`Self::update`].
     fn force(&mut self) -> Option<&ForceThread> {
         if self.force.is_none() {
             self.force = match cfg!(target_family = "wasm") {
@@ -59,7 +60,8 @@ impl Forces {
         self.force.as_ref()
     }
 
-    /// Calls `wish` for each device: `Ok` sets its feedback, `Err` stops its feedback for the given reason.
+    /// Updates the feedback of each device with the result of `wish`: `Ok` is the new feedback, `Err` the
+    /// reason why the device gets none.
     pub fn tell(&self, wish: impl Fn(DeviceId) -> Result<State, Stop>) {
         for (&id, line) in &self.lines {
             match wish(id) {
@@ -76,7 +78,7 @@ impl Forces {
         }
     }
 
-    /// Plays the impulse of a tear on a device; `size` is 0 to 1 (strongest).
+    /// Plays a short rumble on a device when a body tears; `size` is 0 to 1 (strongest).
     pub fn tear(&self, device: DeviceId, size: f32) {
         if let Some(line) = self.lines.get(&device) {
             line.tear(size);

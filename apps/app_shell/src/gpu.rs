@@ -5,14 +5,14 @@ use eframe::egui_wgpu::{RenderState, WgpuSetup};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The window has no GPU, not even one in software.
+/// Error: the window has no GPU, not even a software adapter.
 #[derive(Copy, Clone, Debug, thiserror::Error)]
 #[error("no graphics adapter: neither Vulkan nor OpenGL is available, not even in software")]
 pub struct NoGpu;
 
-/// Makes wgpu allocate memory in small blocks. Its default blocks have 64 MB and more, and each stays
-/// allocated once used. On a software GPU or with shared memory, the memory use of a program that runs all
-/// day would vary by such steps.
+/// Makes wgpu allocate GPU memory in small blocks. Its default blocks have 64 MB and more, and stay allocated
+/// once used. If the GPU uses main memory, such blocks would change the memory use of the program by large
+/// steps.
 pub fn with_small_memory_blocks(mut setup: WgpuSetup) -> WgpuSetup {
     if let WgpuSetup::CreateNew(new) = &mut setup {
         let described = new.device_descriptor.clone();
@@ -34,8 +34,8 @@ pub struct GpuWatch {
 }
 
 impl GpuWatch {
-    /// Creates the monitor of a window's GPU. The first GPU error is printed with the name of the program.
-    /// The program continues, because the only remedy is to restart in a new window.
+    /// Creates the monitor of a window's GPU. The first GPU error is printed, together with `program`, the
+    /// program's name. The program is not stopped here; the caller restarts it if the GPU is lost.
     pub fn of(state: &RenderState, program: &'static str) -> Self {
         let is_lost = Arc::new(AtomicBool::new(false));
         let lost = is_lost.clone();

@@ -17,12 +17,13 @@ const ADAPTS: f64 = 0.1;
 /// Scheduler of the ticks of each frame.
 #[derive(Clone, Debug, Default)]
 pub struct Pace {
-    /// Time that has passed but was not played yet [s].
+    /// Real time that has passed but is not simulated yet [s].
     owed: f64,
     /// Expected cost of a tick [s]; 0 = not measured yet.
     cost: f64,
-    /// Ticks of this frame and their total cost [s].
+    /// Number of ticks played in this frame.
     ticks: u32,
+    /// Total computing time of the ticks of this frame [s].
     spent: f64,
 }
 
@@ -33,13 +34,13 @@ impl Pace {
         (self.ticks, self.spent) = (0, 0.0);
     }
 
-    /// Drops the time that was not played yet.
+    /// Drops the real time that is not simulated yet.
     pub fn forget(&mut self) {
         self.owed = 0.0;
     }
 
-    /// Returns whether another tick is due in this frame. If so, its time counts as played: play it, and
-    /// report its cost with [`Self::note`].
+    /// Returns whether another tick is due in this frame. If so, the caller must play the tick and report its
+    /// computing time with [`Self::note`].
     pub fn is_due(&mut self) -> bool {
         let tick = f64::from(DEFAULT_TICK);
         if self.owed < tick {
@@ -51,17 +52,17 @@ impl Pace {
             self.owed -= tick;
             return true;
         }
-        // Keeps one tick for the next frame and drops the remaining time.
+        // Keeps the time of one tick for the next frame and drops all other missed time.
         self.owed = tick;
         false
     }
 
-    /// Expected cost of a tick [s]; 0 before the first tick.
+    /// Expected computing time of a tick [s]; 0 before the first tick.
     pub fn cost(&self) -> f64 {
         self.cost
     }
 
-    /// Reports a played tick and its cost [s].
+    /// Reports a played tick and its computing time [s].
     pub fn note(&mut self, cost: f64) {
         self.ticks += 1;
         self.spent += cost;
@@ -74,18 +75,21 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// Result of a simulated minute: frames per second, longest frame [s], and simulated time divided by real
-    /// time.
+    /// Result of a simulated minute.
     struct Seen {
+        /// Frames per second.
         frames: f64,
+        /// Longest frame [s].
         longest: f64,
+        /// Simulated time divided by real time.
         speed: f64,
-        /// Difference between the most and the fewest ticks in a second, relative to the mean.
+        /// Difference between the most and the fewest ticks in one second of the minute, relative to the
+        /// mean.
         uneven: f64,
     }
 
-    /// Simulates a minute in which a tick takes `tick` [s] and drawing a frame takes `picture` [s], on a
-    /// screen with at most `rate` frames per second.
+    /// Simulates a minute of frames. A tick takes `tick` [s] to compute and a frame `picture` [s] to draw;
+    /// the screen shows at most `rate` frames per second.
     fn minute(tick: f64, picture: f64, rate: f64) -> Seen {
         let (mut pace, mut now, mut last) = (Pace::default(), 0.0f64, 0.0f64);
         let (mut frames, mut longest) = (0, 0.0f64);
@@ -95,7 +99,7 @@ mod tests {
             pace.begin(now - last);
             last = now;
             while pace.is_due() {
-                // Costs vary by a fifth, as they do when bodies are torn.
+                // The cost of a tick varies by a fifth, as it does when bodies are torn.
                 let cost = tick * (1.0 + 0.2 * (37.0 * now).sin());
                 now += cost;
                 pace.note(cost);
@@ -130,12 +134,12 @@ mod tests {
                 100.0 * seen.speed,
                 100.0 * seen.uneven
             );
-            // Full speed while the ticks fit into the frames.
+            // Ticks that fit into the frames must run at full speed.
             if cost <= 12 {
                 assert!(seen.speed > 0.98 && seen.frames > 45.0, "{told}");
             }
-            // If they do not fit, the machine is never idle, and a frame takes the time of one tick and its
-            // picture.
+            // If the ticks do not fit into the frames, a frame must take no longer than one tick and its
+            // drawing.
             let cost = 1e-3 * f64::from(cost);
             assert!(seen.longest < (1.25 * cost).max(BUDGET) + 4e-3, "{told}");
             assert!(
@@ -143,7 +147,7 @@ mod tests {
                 "{told}"
             );
             assert!(seen.uneven < 0.15, "{told}");
-            // A slightly higher cost never causes a sudden drop.
+            // A tick that costs 1 ms more must not make speed or frame rate drop suddenly.
             if let Some(before) = before {
                 assert!(seen.speed > 0.85 * before.speed, "{told}");
                 assert!(seen.frames > 0.75 * before.frames, "{told}");

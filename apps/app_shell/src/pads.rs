@@ -34,7 +34,8 @@ impl Pads {
         Self(Source::Told(snapshot, BTreeMap::new()))
     }
 
-    /// Records the feedback sent to the simulated devices in `notes`. Does nothing for real devices.
+    /// Makes simulated devices record the feedback that they receive in `notes`. Does nothing for real
+    /// devices.
     pub fn noting(self, notes: BTreeMap<DeviceId, Recording>) -> Self {
         Self(match self.0 {
             Source::Told(snapshot, _) => Source::Told(snapshot, notes),
@@ -51,8 +52,8 @@ impl Pads {
         }
     }
 
-    /// Opens a device for feedback. The returned sink does nothing without the feature `haptic`, or if a
-    /// simulated device has no recording.
+    /// Opens a device for feedback and returns the sink of its commands. The sink ignores all commands
+    /// without the feature `haptic`, or if a simulated device has no recording.
     pub fn haptic(&self, device: DeviceId) -> Box<dyn Sink> {
         match &self.0 {
             #[cfg(feature = "haptic")]

@@ -21,7 +21,7 @@ impl<R: Send + 'static> CallbackTrait for PaintCallback<R> {
     }
 }
 
-/// Locks `renderer`. Ignores that the lock may be poisoned: a panic leaves at worst an unfinished picture.
+/// Locks `renderer`, even if a panic poisoned the lock: at worst a picture is unfinished.
 pub fn lock<R>(renderer: &Mutex<R>) -> MutexGuard<'_, R> {
     renderer.lock().unwrap_or_else(PoisonError::into_inner)
 }

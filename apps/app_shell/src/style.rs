@@ -27,7 +27,7 @@ pub fn apply(context: &Context) {
     add("japanese", JAPANESE);
     context.set_fonts(fonts);
     context.set_theme(egui::Theme::Light);
-    // Turns egui's zoom keys off: the game sets the text size itself.
+    // Turns egui's keys for zooming off, because the game sets the text size itself.
     context.options_mut(|options| {
         options.zoom_with_keyboard = false;
         // A press counts as a click however long it lasts: players may hold a button for long, and frames of

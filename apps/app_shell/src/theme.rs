@@ -5,21 +5,21 @@ use egui::Color32;
 /// Colours of the interface and the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Theme {
-    /// Background.
+    /// Colour of the background.
     pub paper: Color32,
-    /// Text.
+    /// Colour of text.
     pub ink: Color32,
-    /// Less important text.
+    /// Colour of less important text.
     pub faint: Color32,
-    /// Cards on the background.
+    /// Colour of cards: panels on the background.
     pub card: Color32,
-    /// Buttons.
+    /// Colour of buttons.
     pub button: Color32,
-    /// Main button and highlights.
+    /// Colour of the main button and of highlights.
     pub accent: Color32,
-    /// Text on [`Theme::accent`].
+    /// Colour of text on [`Theme::accent`].
     pub on_accent: Color32,
-    /// Success.
+    /// Colour that stands for success.
     pub good: Color32,
     /// Colours of bodies, hands and other parts of the simulated world.
     pub world: fuwafuwa_render::Palette,

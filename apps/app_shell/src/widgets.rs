@@ -95,8 +95,8 @@ pub fn fitted(painter: &Painter, text: &str, size: f32, width: f32, ink: Color32
     }
 }
 
-/// Stores whether menus are used with keys or a gamepad. Only these need a focus ring; mouse and touch do
-/// not.
+/// Stores whether menus are used with keys or a gamepad. The focus ring is drawn only then, because mouse and
+/// touch need none.
 pub fn note_use_of_keys(ctx: &Context, by_keys: bool) {
     ctx.data_mut(|data| data.insert_temp(Id::unique("by keys"), by_keys));
 }
@@ -107,7 +107,7 @@ pub fn is_on(ui: &Ui, response: &Response) -> bool {
     response.has_focus() && by_keys == Some(true)
 }
 
-/// Stores the widget under the mouse, for [`take_hovered`].
+/// Stores this widget for [`take_hovered`] if the mouse is over it.
 pub fn note_hovered(ui: &Ui, response: &Response) {
     if response.hovered() {
         ui.data_mut(|data| data.insert_temp(Id::unique("hovered"), Some(response.id)));

@@ -10,15 +10,16 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Shortest run after which a lost GPU leads to a restart. After a shorter run, the restarted program would
-/// probably lose the GPU again.
+/// Minimum running time before a lost GPU leads to a restart. After a shorter run, the restarted program
+/// would probably lose the GPU again.
 const LEAST_LIFE: Duration = Duration::from_secs(10);
 
 /// Outcome of a window.
 pub enum WindowOutcome {
     /// The window was closed.
     Closed,
-    /// The GPU was lost. Window systems do not release a failed window, so the program has to restart.
+    /// The GPU was lost. The whole program has to restart, because window systems do not release the failed
+    /// window.
     LostGpu,
     /// The window opened and ended with this error.
     Failed(String),
@@ -28,7 +29,7 @@ pub enum WindowOutcome {
     Never(String),
 }
 
-/// App of a window and the monitor of its GPU, or an error if there is no GPU.
+/// App to run in a window and the monitor of its GPU, or an error if there is no GPU.
 pub type Made = Result<(Box<dyn eframe::App>, GpuWatch), NoGpu>;
 
 /// Opens a window of a program. Returns when the window is closed.
@@ -98,7 +99,8 @@ fn on_what_lives(mut setup: WgpuSetup) -> WgpuSetup {
         let lives = |adapter: &&&wgpu::Adapter| {
             block_on(adapter.request_device(&described(adapter))).is_ok()
         };
-        // The last adapter is not tried here. If it fails, eframe reports the error.
+        // Leaves out the last adapter: it is used in any case if no other works, and eframe reports its
+        // errors.
         let (last, others) = fitting
             .split_last()
             .ok_or("no graphics adapter was found")?;
@@ -118,14 +120,14 @@ fn rank(kind: wgpu::DeviceType, saves_power: bool) -> u8 {
     }
 }
 
-/// Returns the reason why no window opens, as text for the user.
+/// Returns the reason why the window did not open, as text for the user.
 fn trouble(error: &eframe::Error) -> String {
     let text = error.to_string();
     match error {
         eframe::Error::Wgpu(_) => format!(
             "no graphics adapter: neither Vulkan nor OpenGL is available, not even in software ({text})"
         ),
-        // winit puts a line of its source code before the reason.
+        // Removes the line of winit's source code that precedes the reason.
         eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => {
             let reason = text.rsplit(": ").next().unwrap_or(&text);
             format!("opening a window failed ({reason})")

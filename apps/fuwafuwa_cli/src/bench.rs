@@ -1,5 +1,5 @@
-//! Measures speed and memory. Machines are shared and noisy, so cases to be compared take turns within one
-//! run. Use medians and ratios.
+//! Measures speed and memory. Other programs disturb the times, so cases that are compared alternate within
+//! one run. Compare medians and ratios, not single times.
 
 mod rapier;
 
@@ -158,8 +158,8 @@ fn one(measure: Result<Measure>) -> Result<Vec<Measure>> {
     Ok(vec![measure?])
 }
 
-/// Measures a substep of a freely oscillating ball with a number of cracks, per element: element pass and
-/// node pass together.
+/// Measures the time of a substep per element, on a freely oscillating ball with a number of cracks. A
+/// substep consists of an element pass and a node pass.
 fn element_time<D: Dim>(n: usize, cracks: usize) -> Result<Measure> {
     let mut body = torn::<D>(n, cracks)?;
     let elements = body.mesh().element_count() as f64;
@@ -177,7 +177,8 @@ fn element_time<D: Dim>(n: usize, cracks: usize) -> Result<Measure> {
 fn release_time<D: Dim>(n: usize) -> Result<Measure> {
     let grid = VoxelGrid::<D>::ball(n, 1.0)?;
     let mut body = SoftBody::new(grid, &[Material::default()])?;
-    // Points where every third column of voxels enters the ball, within its middle half.
+    // Points where every third column of voxels enters the ball. Only columns in the middle half of the
+    // ball's width are used.
     let columns = || (n / 4..3 * n / 4).step_by(3);
     let rows = if D::N == 3 {
         columns().collect()
@@ -209,8 +210,8 @@ fn scene(name: &str, changes: &[String], progress: &Progress) -> Result<Vec<Meas
     }
 }
 
-/// Measures a scene several times. Each run is identical, so the minimum time of a tick is its cost; the rest
-/// is noise of the machine.
+/// Measures a scene several times. All runs are identical, so the cost of a tick is its shortest time in any
+/// run; longer times come from other programs.
 fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Vec<Measure>> {
     const RUNS: u64 = 3;
     progress.expect(RUNS * scene.ticks());
@@ -287,8 +288,8 @@ fn memory() -> Result<Measure> {
     Ok(measure(what, "MB", vec![peak / 1024.0], 1.0))
 }
 
-/// Compares an oscillating graded ball with a uniform one. They take turns of 16 substeps, as many as in a
-/// tick.
+/// Compares an oscillating graded ball with a uniform one. The balls alternate after every 16 substeps, the
+/// substeps of a tick.
 fn against_uniform(arguments: &Arguments, progress: &Progress) -> Result<Vec<Measure>> {
     let n = arguments.n.map(usize::from);
     match arguments.dim {
@@ -359,7 +360,7 @@ fn torn<D: Dim>(n: usize, cracks: usize) -> Result<SoftBody<D>> {
         let axis = random(D::N) as usize;
         let middle = [0; 3].map(|_: i32| random(n + 1));
         let radius = 2 + random(n / 6);
-        // Octants on the lower side of the crack.
+        // Octants around a lattice point that lie on the lower side of the crack.
         let side = (0..D::CORNERS).filter(|octant| octant >> axis & 1 == 0);
         let side: u8 = side.map(|octant| 1 << octant).sum();
         let reach = |other: usize| {

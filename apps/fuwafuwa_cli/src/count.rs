@@ -48,8 +48,8 @@ enum Form {
 }
 
 /// Ways to place the elements. `graded`, for bodies that can be cut, has single-voxel elements at the
-/// surface. `coarse`, as counted in the paper, has elements of two voxels there and a vertex at every lattice
-/// point of the surface.
+/// surface. `coarse`, as counted in the paper, has elements two voxels wide at the surface, and a vertex at
+/// every lattice point of the surface.
 const PLACINGS: [(&str, Grading); 2] = [("graded", Grading::Graded), ("coarse", Grading::Coarse)];
 
 /// Counts of one body.

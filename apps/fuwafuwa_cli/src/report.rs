@@ -5,7 +5,7 @@ use serde::Serialize;
 use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
-/// Running time after which the progress bar appears.
+/// Running time of a command after which its progress bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Outcome of a check for one measured value.
@@ -15,7 +15,7 @@ pub struct Outcome {
     pub case: String,
     /// Measured value.
     pub value: f64,
-    /// Requirement on the value.
+    /// Requirement on the measured value, as text.
     pub wanted: String,
     /// Whether the value meets the requirement; `None` if it is shown for comparison only.
     pub pass: Option<bool>,
@@ -63,7 +63,7 @@ impl Outcome {
     }
 }
 
-/// Progress bar on standard error, hidden while a check is quick.
+/// Progress bar on standard error. It appears only after [`PATIENCE`].
 pub struct Progress {
     start: Instant,
     bar: ProgressBar,
@@ -82,7 +82,7 @@ impl Progress {
         }
     }
 
-    /// Adds to the number of steps expected in all.
+    /// Adds to the total number of steps that the progress bar expects.
     pub fn expect(&self, steps: u64) {
         self.bar.inc_length(steps);
     }
@@ -93,7 +93,7 @@ impl Progress {
         self.show_if_slow();
     }
 
-    /// Shows the bar if the check has taken longer than [`PATIENCE`]. Cheap enough for inner loops.
+    /// Shows the progress bar if the command has run longer than [`PATIENCE`]. Cheap enough for inner loops.
     pub fn show_if_slow(&self) {
         if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());

@@ -16,8 +16,9 @@ use std::process::ExitCode;
 const WIDTH: u32 = 420;
 /// Number of frames in a strip.
 const MOMENTS: usize = 12;
-/// Ticks between two frames of a GIF, and display time of a frame [1/100 s].
+/// Ticks between two frames of a GIF.
 const PACE: u64 = 3;
+/// Display time of a frame of a GIF [1/100 s].
 const HUNDREDTHS: u16 = 5;
 
 /// Run a scene, given by name or TOML file.
@@ -63,7 +64,7 @@ struct Summary {
     hash: String,
 }
 
-/// Dimension whose worlds can be painted.
+/// Dimension with worlds that can be drawn as frames of a film.
 trait Filmed: Dim {
     /// Paints the current state of a world, in the view of its scene.
     fn painted(world: &World<Self>, scene: &Scene, elements: bool) -> Result<Painter>;
@@ -279,7 +280,7 @@ mod tests {
             let error = run(&filmed(frames, film.into())).unwrap_err();
             error.to_string()
         };
-        // With so many ticks, a run that began before the check would never end.
+        // Passes the largest number of ticks: if the run began before the check, the test would never end.
         assert!(refused(u64::MAX, "nowhere/film.gif").contains("no such folder"));
         assert!(refused(u64::MAX, "film.mp4").contains(".png or .gif"));
         assert!(refused(0, "film.gif").contains("at least 1"));

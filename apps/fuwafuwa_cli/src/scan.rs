@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Progress steps for reading each scan, and again for making the organ.
+/// Steps of the progress bar for reading each scan; making the organ takes the same number of steps.
 const STEPS: u64 = 100;
 
 /// Colours of materials in a model, starting at number 1; they repeat after the last.
@@ -123,7 +123,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns a callback for the progress of one part, 0 to 1. It advances the bar by up to [`STEPS`] steps.
+/// Returns a callback for the progress of reading a scan or making the organ, 0 to 1. The callback advances
+/// the bar by up to [`STEPS`] steps.
 fn follow(progress: &Progress) -> impl FnMut(f32) {
     let mut shown = 0;
     move |done| {

@@ -30,8 +30,9 @@ use section::Slices;
 use session::Session;
 use std::path::PathBuf;
 
-/// Camera rotation by mouse [rad/point], and by keys and sticks [rad/s].
+/// Camera rotation per point of mouse movement [rad/point].
 const DRAG: f32 = 0.006;
+/// Speed of camera rotation by keys and sticks at full deflection [rad/s].
 const LOOK: f32 = 1.2;
 /// Movement of the hand per scrolled point of the mouse wheel [m/point].
 const WHEEL: f32 = 0.000_03;
@@ -63,7 +64,7 @@ pub struct App {
     colours: Palette,
     clock: Clock,
     before: f64,
-    /// Current message and the time at which it disappears [s].
+    /// Message on the screen, and the time at which the message disappears [s].
     said: Option<(String, f64)>,
     gpu: GpuWatch,
 }
@@ -99,7 +100,7 @@ impl App {
         Ok(app)
     }
 
-    /// Returns a watch on the GPU that the app draws with.
+    /// Returns the monitor that notices the loss of the app's GPU.
     pub fn gpu(&self) -> GpuWatch {
         self.gpu.clone()
     }
@@ -108,7 +109,7 @@ impl App {
         self.said = Some((text, self.clock.now() + STAYS));
     }
 
-    /// Starts loading. The current session stays until loading has finished.
+    /// Starts loading an organ or a recording. The current session stays until loading has finished.
     fn open(&mut self, wanted: LoadRequest) {
         match Loading::begin(wanted) {
             Ok(loading) => self.loading = Some(loading),
@@ -134,7 +135,8 @@ impl App {
             Err(error) => {
                 self.say(error.to_string());
                 if self.session.is_none() {
-                    // Loads the phantom instead, so that there is always an organ.
+                    // Loads the phantom if the requested organ failed to load, so that there is always an
+                    // organ.
                     self.open(LoadRequest::Phantom(self.setup.options.resolution));
                 }
             }
@@ -200,7 +202,7 @@ impl App {
         }
     }
 
-    /// Restarts with the uncut organ.
+    /// Restarts the procedure with the uncut organ.
     fn again(&mut self) {
         let Some(session) = &self.session else {
             return;
@@ -215,7 +217,7 @@ impl App {
         }
     }
 
-    /// Advances the hand and the organ.
+    /// Advances hand and organ by `seconds`.
     fn pass(&mut self, ctx: &egui::Context, seconds: f32) {
         let focused = ctx.input(|input| input.focused);
         let is_typing = ctx.egui_wants_keyboard_input();

@@ -7,15 +7,16 @@ use fuwafuwa::{
 };
 use fuwafuwa_scan::Organ;
 
-/// Fraction of an organ's weight that remains in saline. A brain of 1400 g weighs some 50 g in its fluid.
+/// Weight of an organ in saline, as a fraction of its weight in air. A brain of 1400 g weighs some 50 g in
+/// its fluid.
 const AFLOAT: f32 = 0.04;
-/// Drag of the saline: relative loss of speed [1/s].
+/// Drag of the saline: relative loss of the organ's speed per second [1/s].
 const DRAG: f32 = 2.0;
-/// Lower part of the organ that is fixed in a mould, as a fraction of the organ's height.
+/// Height of the lower part of the organ, which is fixed in a mould, as a fraction of the organ's height.
 const HELD: f32 = 0.25;
-/// Limit between coarse and fine organs [voxels along the longest side]. Coarse organs get the first number
-/// of substeps. Fine ones get the second, because they would take too long otherwise.
+/// Number of voxels along the longest side above which an organ counts as fine.
 const FINE: usize = 40;
+/// Number of substeps per tick for coarse and for fine organs. Fine organs would take too long with more.
 const SUBSTEPS: [u32; 2] = [16, 8];
 /// Maximum length of a case name [characters].
 const MOST_LETTERS: usize = 200;
@@ -169,8 +170,8 @@ impl Case {
     fn body(&self, substeps: u32) -> Result<(SoftBody<Dim3>, f32), CaseError> {
         let wanted = f64::from(DEFAULT_TICK) / f64::from(substeps);
         let ratio = wanted / self.longest_substep()?;
-        // With k times the mass, waves are √k times as slow, so k is the square of the ratio. The factor
-        // 1.001 allows for rounding.
+        // With k times the mass, waves are √k times as slow and substeps may be √k times as long. The mass
+        // therefore grows with the square of `ratio`. The factor 1.001 allows for rounding.
         let inertia = (1.001 * ratio * ratio).max(1.0) as f32;
         let heavier = |tissue: &Material| Material {
             density: tissue.density * inertia,

@@ -117,7 +117,7 @@ fn again(
     Ok(playback.into_procedure())
 }
 
-/// Summarizes loading time and processor times of all ticks except the first.
+/// Summarizes the loading time `laid`, and the processor times of all ticks except the first.
 fn told(procedure: &Procedure, laid: f32, mut costs: Vec<f64>) -> String {
     costs = costs.split_off(costs.len().min(1));
     costs.sort_by(f64::total_cmp);

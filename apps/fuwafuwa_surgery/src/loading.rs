@@ -18,8 +18,9 @@ use std::thread;
 /// File extension of recordings.
 pub const ENDING: &str = "fuwacut";
 
-/// Progress, 0 to 1, after reading the scans, and after making the organ.
+/// Progress when the scans have been read; 1 is the end of loading.
 const READ: f32 = 0.35;
+/// Progress when the organ has been made; 1 is the end of loading.
 const MADE: f32 = 0.9;
 
 /// Source of an organ or a procedure to load.
@@ -166,7 +167,7 @@ impl Loading {
         Ok(Self { done, told })
     }
 
-    /// Returns the progress, 0 to 1.
+    /// Returns the progress of loading, 0 to 1.
     pub fn progress(&self) -> f32 {
         f32::from_bits(self.done.load(Ordering::Relaxed))
     }

@@ -49,8 +49,8 @@ pub fn parts(body: &SoftBody<Dim3>, voxel: f64) -> Vec<PieceVolume> {
     let mut parts = vec![none; body.pieces().list.len()];
     let mesh = body.mesh();
     for (id, element) in mesh.elements() {
-        // An element fills some children of its cell, of 8^(level − 1) voxels each. An element of level 0 is
-        // one voxel without children.
+        // Number of voxels in the element. Each child of a cell has 8^(level − 1) voxels; an element of level
+        // 0 is one voxel without children.
         let voxels = match element.cell.level {
             0 => 1,
             level => element.children.count_ones() << (3 * (u32::from(level) - 1)),

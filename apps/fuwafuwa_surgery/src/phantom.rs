@@ -18,13 +18,14 @@
 use crate::case::{Case, CaseError, tissues};
 use fuwafuwa::VoxelGrid;
 
-/// Half axes of the ellipsoid [mm]: left–right, front–back, up–down.
+/// Half axes of the phantom's ellipsoid [mm]: left–right, front–back, up–down.
 pub const HALF: [f64; 3] = [48.0, 64.0, 36.0];
-/// Growth: centre (RAS+) and radius [mm].
+/// Ball of hard growth in the phantom: centre (RAS+) and radius [mm].
 pub const GROWTH: ([f64; 3], f64) = ([22.0, 18.0, 12.0], 11.0);
-/// Vessel: position to the right and up, and radius [mm].
+/// Vessel through the phantom, a cylinder from front to back: its axis (distance to the right and up from the
+/// centre) and its radius [mm].
 const VESSEL: ([f64; 2], f64) = ([-20.0, 8.0], 5.0);
-/// Scale of the core relative to the organ.
+/// Size of the phantom's firmer core, an ellipsoid, relative to the whole phantom.
 const CORE: f64 = 0.45;
 
 /// Returns the material at a point in the patient, RAS+ [mm]; 0 outside.
@@ -35,7 +36,7 @@ pub fn material(patient: [f64; 3]) -> u8 {
         part * part
     };
     let is_inside = |of: f64| (0..3).map(|axis| share(axis, of)).sum::<f64>() < 1.0;
-    // A furrow from above separates the left and right halves, as in a brain.
+    // Depth of a furrow at the top of the phantom, which separates the left and right halves as in a brain.
     let depth = up - 0.45 * HALF[2];
     if !is_inside(1.0) || right.abs() < (0.22 * depth).min(4.0) {
         return 0;

@@ -12,14 +12,14 @@ use std::sync::Arc;
 
 /// Resolution of recorded positions [m].
 const STEP: f32 = 1e-5;
-/// Recorded value that stands for 1 in a component of a quaternion.
+/// Integer that a recording stores for 1 in a component of a quaternion.
 const PARTS: f32 = 32767.0;
 /// Maximum speed of a tool [m/s], for example after a jump of the mouse.
 const FASTEST: f32 = 0.25;
 /// Maximum angular speed of a tool [rad/s].
 const SPIN: f32 = 5.0;
-/// Height above the organ at which tools enter, as a fraction of the organ's height. It is at least the
-/// clearance of the largest tool.
+/// Height above the organ at which tools enter, as a fraction of the organ's height. Tools enter higher if
+/// the clearance of the largest tool requires it.
 const ENTRY: f32 = 0.2;
 /// Maximum length of a procedure [ticks]: one hour.
 pub const MOST_TICKS: usize = 60 * 60 * 60;
@@ -81,7 +81,7 @@ pub struct Procedure {
     case: Arc<Case>,
     table: Table,
     held: HeldTool,
-    /// Target position of the tool [m]. It follows the input at limited speed.
+    /// Target position of the tool [m]. It follows the position in the input at limited speed.
     goal: Vec3,
     rotation: Rotation,
     inputs: Vec<Input>,
@@ -194,7 +194,7 @@ impl Procedure {
         bounds(self.organ())
     }
 
-    /// Returns the height at which tools enter [m]: above the organ, but within reach.
+    /// Returns the height at which tools enter [m]: above the organ, but within the room.
     pub fn entry(&self) -> f32 {
         entry(&self.table)
     }
@@ -204,7 +204,7 @@ impl Procedure {
         &self.hashes
     }
 
-    /// Changes the tool. The new one enters above the organ, so that it does not start inside tissue.
+    /// Changes the tool. The new tool enters above the organ, so that it does not start inside tissue.
     fn take(&mut self, tool: Tool) -> Result<(), Error> {
         if tool == self.held.tool() {
             return Ok(());
@@ -215,7 +215,7 @@ impl Procedure {
         std::mem::replace(&mut self.held, next).put_away(world)
     }
 
-    /// Moves the target of the tool towards the input, at limited speed and within the room.
+    /// Moves the target of the tool towards the position in the input, at limited speed and within the room.
     fn follow(&mut self, input: &Input) {
         let [low, high] = self.table.room;
         let way = input.place().clamp(low, high) - self.goal;

@@ -5,7 +5,7 @@
 //! "fuwacut\n"  version u32  checksum u64  length u32  contents, deflated: postcard
 //! ```
 //!
-//! Numbers are little-endian. The checksum covers all bytes after itself; the length is that of the
+//! Numbers are little-endian. The checksum covers all bytes that follow it. The length is that of the
 //! uncompressed contents. A recording contains the voxels of the organ. A recording made from a patient's
 //! scan therefore contains part of that scan.
 
@@ -55,10 +55,10 @@ pub enum RecordError {
         /// Format version of the recording.
         found: u32,
     },
-    /// A size exceeds its limit.
+    /// A size in the recording exceeds its limit.
     #[error("{what}: expected at most {limit}, found {found}")]
     TooLarge {
-        /// Name of the quantity.
+        /// Name of the quantity that is too large.
         what: &'static str,
         /// Given value.
         found: usize,
@@ -71,14 +71,14 @@ pub enum RecordError {
     /// The organ is invalid.
     #[error("invalid organ in the recording: {0}")]
     Case(#[from] CaseError),
-    /// The world rejected an input.
+    /// The world rejected an input of the recording during the replay.
     #[error("{0}")]
     Refused(Error),
     /// The replay differs from the recording.
     #[error("the replay differs from the recording in second {second}")]
     Differs {
-        /// Second in which the first difference was found, starting at 0. The hashes are compared once a
-        /// second.
+        /// Second in which the first difference was found, starting at 0. The world hashes are compared once
+        /// a second.
         second: usize,
     },
 }
@@ -256,7 +256,7 @@ impl Playback {
         &self.procedure
     }
 
-    /// Returns the procedure as replayed so far, to be continued by hand.
+    /// Returns the procedure as replayed so far. The user can continue it by hand.
     pub fn into_procedure(self) -> Procedure {
         self.procedure
     }

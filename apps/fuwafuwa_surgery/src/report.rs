@@ -16,7 +16,7 @@ pub const NO_DEVICE: &str = "Not a medical device: for demonstration and teachin
 
 /// Size of the plots [px].
 const SIZE: (u32, u32) = (900, 760);
-/// Maximum number of points of a line. More would not be visible at this resolution.
+/// Maximum number of points of a plotted line. More points would not be visible at the size of the plots.
 const POINTS: usize = 1500;
 /// Maximum number of labels along an axis.
 const LABELS: usize = 10;
@@ -117,7 +117,7 @@ fn draw(
     let long = points().map(|point| point.0).fold(1.0, f64::max);
     let high = points().map(|point| point.1).fold(0.0, f64::max);
     let high = if high > 0.0 { 1.1 * high } else { 1.0 };
-    // Counts have no fractional labels.
+    // Limits the labels of a count to whole numbers.
     let labels = match is_count {
         true => (high as usize).min(LABELS - 1) + 1,
         false => LABELS,
@@ -139,7 +139,7 @@ fn draw(
         .x_label_formatter(&label)
         .label_style(("sans-serif", 14).into_font().color(&INK))
         .draw()?;
-    // Draws the lines in reverse order, so that the first one is on top.
+    // Draws the lines in reverse order, so that the first line is on top.
     for (name, colour, points) in lines.iter().rev() {
         let style = colour.stroke_width(2);
         chart

@@ -40,14 +40,14 @@ pub struct Patch {
 pub struct Slice {
     /// Cross-sections of elements.
     pub patches: Vec<Patch>,
-    /// Segments in which the plane cuts the original surface.
+    /// Segments in which the plane of the slice cuts the original surface of the organ.
     pub rim: Vec<[Vec2; 2]>,
-    /// Segments in which the plane cuts surfaces created by cutting or tearing.
+    /// Segments in which the plane of the slice cuts surfaces created by cutting or tearing.
     pub cracks: Vec<[Vec2; 2]>,
 }
 
-/// Six tetrahedra that fill a block with eight corners. They share the diagonal from the first to the last
-/// corner, so that adjacent blocks divide their common face in the same way.
+/// Six tetrahedra that fill a block with eight corners. All six contain the diagonal from the first to the
+/// last corner, so that adjacent blocks divide their common face in the same way.
 const TETRAHEDRA: [[usize; 4]; 6] = [
     [0, 1, 3, 7],
     [0, 3, 2, 7],
@@ -150,7 +150,8 @@ impl Slice {
                     material: view.material,
                     strain: view.strain,
                 };
-                // If the plane passes through corners, it may cut a tetrahedron only in a line or a point.
+                // Skips empty patches: a plane through corners may cut a tetrahedron only in a line or a
+                // point.
                 if patch.area() > 0.0 {
                     self.patches.push(patch);
                 }
@@ -180,7 +181,7 @@ impl Patch {
         0.5 * self.corners.windows(2).map(doubled).sum::<f32>().abs()
     }
 
-    /// Returns whether a point is inside, that is, on the same side of all edges.
+    /// Returns whether a point is inside the patch, that is, on the same side of all its edges.
     fn holds(&self, at: Vec2) -> bool {
         let count = self.corners.len();
         let sides = (0..count).map(|k| {
@@ -196,7 +197,7 @@ impl Patch {
     }
 }
 
-/// Returns the intersection of the line between two points with a plane between them.
+/// Returns the point in which the line from `a` to `b` crosses a plane between these two points.
 fn crossing(a: Vec3, b: Vec3, axis: usize, at: f32) -> Vec3 {
     let share = (at - a[axis]) / (b[axis] - a[axis]);
     a + (b - a) * share.clamp(0.0, 1.0)

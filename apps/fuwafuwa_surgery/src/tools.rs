@@ -16,7 +16,7 @@ use fuwafuwa::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Coupling of a tool to the hand. It yields by 2 mm per newton (500 N/m), and its maximum force is 30 N.
+/// Coupling of a tool to the hand: a spring of 500 N/m (2 mm per newton) with a maximum force of 30 N.
 const DRIVE: MotionType = MotionType::Coupled {
     mass: 0.1,
     stiffness: 500.0,
@@ -26,21 +26,20 @@ const DRIVE: MotionType = MotionType::Coupled {
 
 /// Friction coefficient of steel on wet tissue.
 const FRICTION: f32 = 0.15;
-/// Half length of the knife's edge, height of its blade and half its thickness [m].
+/// Size of the knife [m]: half length of the edge, height of the blade, and half thickness of the blade.
 const BLADE: [f32; 3] = [0.015, 0.01, 0.0006];
-/// Tip radius of the forceps [m]. For coarse organs it is enlarged to [`THINNEST`].
+/// Tip radius of the forceps [m]. [`THINNEST`] enlarges it for coarse organs.
 const TIP: f32 = 0.002;
-/// Minimum radius of tips and bars [voxels of the organ]. A thinner tip would slip between nodes when it is
-/// pressed in deeply.
+/// Minimum radius of the forceps' tip and the hook's bar [voxels of the organ]. A thinner tool would slip
+/// between nodes when it is pressed in deeply.
 const THINNEST: f32 = 1.5;
 /// Maximum distance from the surface of the tip at which tissue is gripped [m].
 const REACH: f32 = 0.004;
-/// Radius around the gripped point within which nodes are held together [m].
+/// Radius around the gripped point within which nodes are attached to the forceps [m].
 const JAW: f32 = 0.004;
-/// Force at which the forceps slip off [N].
+/// Pulling force at which gripped tissue slips out of the forceps [N].
 const SLIPS: f32 = 8.0;
-/// Half length of the hook's bar, and its radius [m]. For coarse organs the radius is enlarged to
-/// [`THINNEST`].
+/// Size of the hook's bar [m]: half length and radius. [`THINNEST`] enlarges the radius for coarse organs.
 const BAR: [f32; 2] = [0.014, 0.0025];
 /// Length of the drawn handles [m].
 const HANDLE: f32 = 0.11;
@@ -76,7 +75,7 @@ impl Tool {
 pub struct HeldTool {
     tool: Tool,
     holder: RigidBodyHandle,
-    /// Knife of the engine and its edge radius [µm]; `None` if the tool is no knife.
+    /// Handle of the engine's knife, and edge radius [µm]; `None` if the tool is not a knife.
     edge: Option<(KnifeHandle, u16)>,
     grip: Option<JointHandle>,
     /// Whether the forceps are closed, with or without tissue.
@@ -100,8 +99,8 @@ impl HeldTool {
             .at(at)
             .rotated(rotation)
             .with_friction(FRICTION)
-            // The box of a knife has no contact: the engine's `Knife` cuts with its edge and has contact at its
-            // flat sides.
+            // Makes the box of the knife a sensor. The engine's `Knife` provides its contact: it cuts with
+            // its edge and presses with its flat sides.
             .with_sensor(tool == Tool::Knife);
         let holder = world.add_rigid_body(rigid)?;
         Ok(Self {
@@ -126,8 +125,8 @@ impl HeldTool {
         Ok(())
     }
 
-    /// Sets the edge radius of the knife [µm]. If the radius changes, the knife of the engine is replaced and
-    /// restarts its contact with tissue around it. Does nothing for other tools.
+    /// Sets the edge radius of the knife [µm]. A new radius replaces the engine's knife, so that contacts
+    /// with the tissue around it start again. Does nothing for other tools.
     ///
     /// # Errors
     /// [`Error`] if the radius is out of range.
@@ -218,7 +217,7 @@ impl HeldTool {
 
     fn open(&mut self, world: &mut World<Dim3>) {
         if let Some(grip) = self.grip.take() {
-            // A grip that slipped off was already removed.
+            // Ignores the error: a grip that slipped off was already removed.
             let _ = world.remove(grip);
         }
     }
@@ -265,7 +264,7 @@ impl HeldTool {
     }
 }
 
-/// Returns the minimum radius of tips and bars for an organ [m].
+/// Returns the minimum radius of the forceps' tip and the hook's bar for an organ [m].
 fn thinnest(organ: &SoftBody<Dim3>) -> f32 {
     THINNEST * organ.grid().voxel_size()
 }

@@ -5,7 +5,7 @@ use crate::procedure::{Input, Procedure};
 use crate::tools::Tool;
 use fuwafuwa::{DEFAULT_TICK, Rotation, Vec3};
 
-/// Straight motion between two points.
+/// Straight motion of the tool between two points.
 #[derive(Clone, Debug)]
 struct Leg {
     tool: Tool,
@@ -86,7 +86,7 @@ impl Plan {
         low + (high - low) * self.random.f32()
     }
 
-    /// Adds a straight motion to a point at a speed [m/s].
+    /// Appends a straight motion to the point `to` at a speed [m/s].
     fn go(&mut self, tool: Tool, to: Vec3, rotation: Rotation, grips: bool, speed: f32) {
         let far = to.distance(self.at);
         self.legs.push(Leg {
@@ -100,7 +100,7 @@ impl Plan {
         self.at = to;
     }
 
-    /// Lowers the knife into the organ and draws it along.
+    /// Appends a cut: the knife is lowered into the organ and drawn along.
     fn cut(&mut self, middle: Vec3, size: Vec3, above: f32) {
         let heading = self.between(-1.5, 1.5);
         let turned = Rotation::about(Vec3::Y, heading);
@@ -116,7 +116,7 @@ impl Plan {
         self.go(Tool::Knife, to, turned, false, 0.1);
     }
 
-    /// Presses the hook into the organ and draws it along.
+    /// Appends a push: the hook is pressed into the organ and drawn along.
     fn push_aside(&mut self, middle: Vec3, size: Vec3, above: f32) {
         let x = middle.x + self.between(-0.2, 0.2) * size.x;
         let z = middle.z + self.between(-0.2, 0.2) * size.z;
@@ -135,7 +135,7 @@ impl Plan {
         self.go(Tool::Hook, Vec3::new(x, above, z), turned, false, 0.15);
     }
 
-    /// Grips the top of the organ and pulls.
+    /// Appends a pull: the forceps grip the top of the organ and rise.
     fn pull_up(&mut self, procedure: &Procedure, middle: Vec3, size: Vec3, above: f32) {
         let x = middle.x + self.between(-0.2, 0.2) * size.x;
         let z = middle.z + self.between(-0.2, 0.2) * size.z;
@@ -156,7 +156,7 @@ impl Plan {
     }
 }
 
-/// Returns the height of the organ's top near a point [m].
+/// Returns the height of the organ's top near a point of the horizontal plane [m].
 fn top_at(procedure: &Procedure, [x, z]: [f32; 2]) -> Option<f32> {
     let organ = procedure.organ();
     let reach = 1.5 * organ.grid().voxel_size();

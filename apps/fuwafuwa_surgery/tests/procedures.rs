@@ -83,7 +83,7 @@ fn replay_is_identical_and_detects_changed_input() {
     );
     assert_eq!(playback.procedure().samples(), procedure.samples());
 
-    // Changes the recorded inputs so that the tool is lower in the third second. The replay must report it
+    // Lowers the tool in the recorded inputs of the third second. The replay must report the difference
     // within that second.
     let mut other = recording.clone();
     for input in &mut other.inputs[150..160] {
@@ -102,7 +102,8 @@ fn replay_is_identical_and_detects_changed_input() {
     );
 }
 
-/// Moves the tool from its position along a path at a speed [m/s]. Returns the maximum force on the way [N].
+/// Moves the tool from its current position along the points `way` at a speed [m/s]. Returns the maximum
+/// force on the tool [N].
 fn go(procedure: &mut Procedure, input: Input, way: &[Vec3], pace: f32) -> f32 {
     let begun = procedure.samples().len();
     let here = procedure.tool().position();

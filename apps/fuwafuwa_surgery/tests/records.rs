@@ -14,7 +14,7 @@ fn recording() -> Recording {
     Recording::of(&procedure)
 }
 
-/// Returns the bytes with a valid checksum.
+/// Returns the bytes of a recording with a valid checksum.
 fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
     let sum = Hash::of(&bytes[20..]).to_le_bytes();
     bytes[12..20].copy_from_slice(&sum);
@@ -111,7 +111,7 @@ fn random_contents_neither_panic_nor_hang() {
         };
         if let Ok(mut playback) = Playback::new(Arc::new(read)) {
             taken += 1;
-            // Any input must either pass a tick or be reported as a difference.
+            // Ignores the result: an input may pass or be reported as a difference, but must not panic.
             let _ = playback.step();
             let organ = playback.procedure().organ();
             organ

@@ -49,7 +49,7 @@ fn growth_appears_at_its_anatomical_position() {
             Cut::Axial | Cut::Coronal => assert!(beside > 0.015 && above > 0.008, "{cut:?}"),
             Cut::Sagittal => assert!(beside < -0.015 && above > 0.008),
         }
-        // The position mirrored at the middle shows no growth.
+        // The slice must show no growth at the mirrored position.
         let other = Vec2::new(whole.x - beside, page.y);
         assert_ne!(slice.material_at(other), Some(3), "{cut:?}");
         assert_eq!(slice.material_at(page + Vec2::X), None);
@@ -66,7 +66,7 @@ fn slice_area_matches_the_deformed_organ() {
     let ellipse = (1e-6 * std::f64::consts::PI * right * front * share) as f32;
     let area = Slice::of(organ(&table), Cut::Axial, at.y).area();
     assert!((area / ellipse - 1.0).abs() < 0.03, "{area} {ellipse}");
-    // Stretches the organ by a tenth along x.
+    // Stretches the organ by a tenth along x, to check that slices show the deformed shape.
     let body = table.world.soft_body_mut(table.organ).unwrap();
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in nodes {
@@ -99,14 +99,14 @@ fn closed_cut_is_visible() {
         assert!((end.x - at.x).abs() < 1.5 * voxel, "{end:?}");
         assert!((end.y + at.z).abs() < 0.02 + 1.5 * voxel, "{end:?}");
     }
-    // The slice of the cut organ has the same area as that of the uncut one.
+    // The slice of the cut organ must have the same area as that of the uncut one.
     let whole = Slice::of(
         &SoftBody::new(case.grid.clone(), &case.tissues).unwrap(),
         Cut::Axial,
         at.y - table.corner.y,
     );
     assert!((slice.area() / whole.area() - 1.0).abs() < 1e-3);
-    // A slice beside the cut shows no cracks.
+    // A slice beside the cut must show no cracks.
     assert!(
         Slice::of(organ(&table), Cut::Sagittal, at.x - 0.02)
             .cracks

@@ -34,7 +34,7 @@
 //! as many substeps as its stiffness requires.
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-// Doc comments give units in brackets: [m].
+// Allows units in brackets, such as [m], which rustdoc takes for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod mesh;
@@ -82,13 +82,13 @@ pub struct Drop {
     pub friction: f32,
     /// Number of frames of 1/60 s.
     pub frames: usize,
-    /// Whether bodies may sleep in Rapier. In fuwafuwa they always may. A comparison of a body in one piece
-    /// ends when that body falls asleep.
+    /// Whether bodies may sleep in Rapier. In fuwafuwa bodies may always sleep. A comparison of a body in one
+    /// piece ends when that body falls asleep.
     pub sleeps: bool,
 }
 
 impl Drop {
-    /// Returns a body of 4·10⁵ Pa that falls 1 m; its peak squash is 7 to 8 %.
+    /// Returns the scene of a stiff body (4·10⁵ Pa) that falls 1 m. Its peak squash is 7 to 8 %.
     pub fn stiff(dim: u8, n: usize) -> Self {
         Self {
             dim,
@@ -104,7 +104,8 @@ impl Drop {
         }
     }
 
-    /// Returns a body of 5000 Pa, as soft as in the game, that falls gently; its peak squash is about 10 %.
+    /// Returns the scene of a body as soft as in the game (5000 Pa) that falls gently. Its peak squash is
+    /// about 10 %.
     pub fn soft(dim: u8, n: usize) -> Self {
         Self {
             young: 5000.0,
@@ -114,7 +115,8 @@ impl Drop {
         }
     }
 
-    /// Returns a disc of 5000 Pa that falls 0.2 m, for [`compare_tear`], which cuts it into pieces first.
+    /// Returns the scene of a disc of 5000 Pa that falls 0.2 m. [`compare_tear`] cuts the disc into pieces
+    /// first.
     pub fn diced(n: usize) -> Self {
         Self {
             height: 0.2,
@@ -162,7 +164,7 @@ impl From<fuwafuwa::Error> for Error {
 /// Result of running a scene.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Builds the scene in Rapier.
+/// Builds the scene in Rapier, with the given solver effort.
 fn theirs(scene: &Drop, effort: Effort) -> Result<Box<dyn Falling>> {
     if scene.dim == 2 {
         return Ok(Box::new(disc(scene, effort)?));

@@ -1,5 +1,5 @@
-//! Prints the frame times of fuwafuwa and Rapier, measured alternately in one run. Started by `fuwafuwa bench
-//! --against rapier`.
+//! Prints the frame times of fuwafuwa and Rapier. Both engines run alternately in one process. `fuwafuwa
+//! bench --against rapier` starts this program.
 
 use std::process::ExitCode;
 
@@ -7,7 +7,7 @@ use against_rapier::{Drop, Effort, EngineResult, Result, compare_drop, compare_t
 use clap::{Parser, ValueEnum};
 use serde::Serialize;
 
-/// Voxels along the edge of a piece of the torn disc; gives 390 pieces for a disc 64 voxels across.
+/// Width of the pieces of the torn disc [voxels]. A disc 64 voxels across gets 390 pieces.
 const PITCH: usize = 3;
 /// Compare the frame times of fuwafuwa and Rapier.
 #[derive(Parser)]
@@ -111,7 +111,7 @@ fn compare_in(scene: Scene, arguments: &Arguments) -> Result<Comparison> {
     };
     drop.frames = arguments.frames.map_or(drop.frames, usize::from);
     let sides = if scene == Scene::Torn {
-        // The default effort suffices here: the small pieces are stiff enough with it.
+        // Uses the default solver effort, because with it the small pieces are stiff enough.
         compare_tear(&drop, PITCH, Effort::default())?
     } else {
         compare_drop(&drop, |Effort { substeps, sweeps }| {

@@ -9,7 +9,7 @@ pub struct Simplices<const K: usize> {
     pub voxel_size: f32,
     /// Node positions [m]. The middle of the grid is at the origin, except that the lowest node has height 0.
     pub positions: Vec<[f32; 3]>,
-    /// Share of each node in the volume (2D: area) of its voxels [m³ or m²].
+    /// Volume (2D: area) that belongs to each node, from the voxels around it [m³ or m²].
     pub volumes: Vec<f32>,
     /// Corner nodes of each simplex.
     pub cells: Vec<[u32; K]>,
@@ -61,7 +61,8 @@ impl Simplices<4> {
 }
 
 impl<const K: usize> Simplices<K> {
-    /// Fills a grid. `splits` are the simplices of a voxel with an even and with an odd sum of coordinates.
+    /// Fills the solid voxels of a grid with simplices. `splits` are the simplices of a voxel whose
+    /// coordinates have an even sum, and of one with an odd sum.
     fn fill<D: Dim>(grid: &VoxelGrid<D>, splits: [&[[usize; K]]; 2]) -> Self {
         let voxel_size = grid.voxel_size();
         let share = voxel_size.powi(D::N as i32) / D::CORNERS as f32;
@@ -167,7 +168,7 @@ mod tests {
         );
     }
 
-    /// The two triangles of a shared face must be the same in both voxels.
+    /// Both voxels must divide their shared face into the same two triangles.
     #[test]
     fn neighbouring_tetrahedra_share_their_faces() {
         let pair = VoxelGrid::<Dim3>::from_fn([2, 1, 1], 1.0, |_| 1).expect("two voxels");

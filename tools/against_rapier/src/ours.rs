@@ -1,4 +1,4 @@
-//! The scenes in fuwafuwa.
+//! The benchmark's scenes in fuwafuwa.
 
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::world::Falling;
 
-/// Allowed difference of the peak squash: 2 percentage points.
+/// Allowed difference between the peak squash of the engines, as a fraction of the height.
 pub const TOLERANCE: f64 = 0.02;
 
 /// Result of a scene in one engine.
@@ -16,7 +16,7 @@ pub struct EngineResult {
     pub substeps: usize,
     /// Factor by which the engine lowered Young's modulus; 1 if it did not.
     pub stiffness_scale: f64,
-    /// Number of pieces at the start.
+    /// Number of pieces of all bodies at the start.
     pub pieces: usize,
     /// Fraction of the pieces that sleep at the end.
     pub asleep: f64,
@@ -64,7 +64,7 @@ pub fn fall<const K: usize>(worlds: [Box<dyn Falling>; K], frames: usize) -> [En
 pub struct MeasuredWorld {
     world: Box<dyn Falling>,
     height: f32,
-    /// Measurements so far.
+    /// Measurements of this world so far.
     pub side: EngineResult,
 }
 

@@ -9,17 +9,19 @@ use crate::side::{EngineResult, MeasuredWorld, TOLERANCE, fall};
 use crate::world::Falling;
 use crate::{Drop, Effort, FRAME, Result, WIDTH, ours, theirs};
 
-/// Candidates for Rapier's solver iterations per substep; the default first, since it is seldom far from the
-/// best.
+/// Numbers of Rapier's solver iterations per substep to try. Rapier's default comes first, since it is seldom
+/// far from the best.
 const SWEEPS: [usize; 4] = [4, 8, 2, 1];
-/// Maximum number of substeps tried.
+/// Maximum number of substeps per frame that is tried.
 const MAX_SUBSTEPS: usize = 128;
 
-/// Lets a body fall in both engines, alternating frame by frame; returns the results of fuwafuwa and of
-/// Rapier. The exact peak squash is that of fuwafuwa with an unsoftened body. Each engine gets the fewest
-/// substeps for which its peak squash exceeds the exact one by at most 2 percentage points. Rapier gets the
-/// number of iterations that is then fastest. `trying` is called before each trial of Rapier. The run lasts
-/// at least until the deepest squash is over, even if that exceeds the frames of the scene.
+/// Lets a body fall in both engines, alternating frame by frame. Returns the results of fuwafuwa and of
+/// Rapier.
+///
+/// The exact peak squash is that of fuwafuwa with an unsoftened body. Each engine gets the fewest substeps
+/// for which its peak squash exceeds the exact one by at most 2 percentage points. Rapier gets the number of
+/// iterations for which it is then fastest. `trying` is called before each trial of Rapier. The run lasts at
+/// least until the deepest squash is over, even if that exceeds the frames of the scene.
 ///
 /// # Errors
 /// [`Error`](crate::Error) if the scene is invalid.
@@ -51,8 +53,8 @@ pub fn compare_drop(scene: &Drop, mut trying: impl FnMut(Effort)) -> Result<[Eng
     Ok(fall([ours, theirs(scene, effort)?], frames))
 }
 
-/// Runs a world until its peak squash exceeds `limit`. Returns whether that never happened, and the median
-/// frame time [ms].
+/// Runs a world for `frames` frames, or until its peak squash exceeds `limit`. Returns whether the squash
+/// stayed within the limit, and the median frame time [ms].
 fn stiff(world: Box<dyn Falling>, frames: usize, limit: f64) -> (bool, f64) {
     let mut watched = MeasuredWorld::new(world);
     let is_stiff = (0..frames).all(|_| {
@@ -62,15 +64,15 @@ fn stiff(world: Box<dyn Falling>, frames: usize, limit: f64) -> (bool, f64) {
     (is_stiff, watched.side.median())
 }
 
-/// Returns the fewest substeps in `range` for which a body is stiff enough, and their median frame time [ms].
-/// Raises the substeps by a quarter until they suffice, then bisects. Returns `None` if no number suffices,
-/// or if the result is not faster than `fastest` [ms].
+/// Returns the fewest substeps in `range` for which a body is stiff enough, and the median frame time with
+/// them [ms]. Raises the number of substeps by a quarter until it suffices, then bisects. Returns `None` if
+/// no number suffices, or if the frame time is not shorter than `fastest` [ms].
 fn fewest_stiff_substeps(
     range: Range<usize>,
     fastest: f64,
     mut stiff: impl FnMut(usize) -> Result<(bool, f64)>,
 ) -> Result<Option<(usize, f64)>> {
-    // The largest number known to be too small, and the smallest known to suffice.
+    // Largest number of substeps known to be too small, and smallest number known to suffice.
     let (mut few, mut found) = (range.start - 1, None);
     let mut substeps = range.start;
     while few + 1 < found.map_or(range.end, |(enough, _)| enough) {
@@ -90,9 +92,9 @@ fn fewest_stiff_substeps(
     Ok(found.filter(|&(_, median)| median < fastest))
 }
 
-/// Returns the number of frames until the first impact and its deepest squash are over. It covers the fall
+/// Returns the number of frames until the first impact and its deepest squash are over. It covers the fall,
 /// and six times the time in which sound crosses the body; a bar with a free end rebounds after four. A
-/// quarter of a second is added for a solver softer than the material.
+/// quarter of a second is added, because a solver softer than the material takes longer.
 fn frames_to_peak(scene: &Drop) -> usize {
     const SOFTER: f32 = 0.25;
     let fall = (2.0 * scene.height / scene.gravity).sqrt();
@@ -144,7 +146,8 @@ mod tests {
             });
             assert_eq!(slow, Ok(None));
         }
-        // The first number found to suffice is too slow, but the smallest one is fast enough.
+        // 25 substeps are fast enough. The search must find them, although the first sufficient number that it
+        // tries is larger and too slow.
         let stiff = |substeps| Ok((substeps >= 25, median(substeps)));
         assert_eq!(
             fewest_stiff_substeps(8..31, 26.0, stiff),
@@ -152,7 +155,7 @@ mod tests {
         );
         let never = |substeps| Ok((false, median(substeps)));
         assert_eq!(fewest_stiff_substeps(8..31, f64::INFINITY, never), Ok(None));
-        // The range is empty.
+        // An empty range must give `None`.
         assert_eq!(fewest_stiff_substeps(8..8, f64::INFINITY, never), Ok(None));
     }
 

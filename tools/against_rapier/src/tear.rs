@@ -1,4 +1,4 @@
-//! A disc cut into many pieces in contact.
+//! Comparison of a disc that is cut into many pieces, which touch each other.
 
 use fuwafuwa::{Blade, Dim2, Vec2, World};
 use rapier2d::prelude::{SoftBodyHandle, Vector};
@@ -7,9 +7,10 @@ use crate::side::{EngineResult, fall};
 use crate::world::{Falling, plane};
 use crate::{Drop, Effort, Error, Result, WIDTH, disc, ours};
 
-/// Cuts a disc into squares along the lines of a lattice, first the vertical and then the horizontal ones,
-/// and lets the pieces fall, alternating frame by frame. Returns the results of fuwafuwa and of Rapier. Each
-/// piece is `pitch` voxels wide, or less at the rim. The pieces touch each other as they touch the floor.
+/// Cuts a disc into squares and lets the pieces fall, alternating the engines frame by frame. Returns the
+/// results of fuwafuwa and of Rapier. The cuts follow first the vertical and then the horizontal lines of a
+/// lattice. Each piece is `pitch` voxels wide, or less at the rim. Contacts between pieces have the same
+/// settings as contacts with the floor.
 ///
 /// # Errors
 /// [`Error`] if the scene is invalid.
@@ -31,8 +32,8 @@ pub fn compare_tear(scene: &Drop, pitch: usize, effort: Effort) -> Result<[Engin
     Ok(fall([Box::new(ours), Box::new(theirs)], scene.frames))
 }
 
-/// Cuts a disc with its middle at `middle` [m]. The lines lie on voxel borders, so that no triangle is cut
-/// and no piece has a frayed rim.
+/// Cuts a disc with its centre at the height `middle` [m]. The cuts lie on boundaries between voxels, so that
+/// no triangle is cut and no piece has a frayed rim.
 fn cut_to_pieces(world: &mut impl Cut, scene: &Drop, pitch: usize, middle: f32) {
     let lowest = world.span().lowest;
     let voxel = WIDTH / scene.n as f32;
@@ -87,8 +88,8 @@ mod tests {
             frames: 10,
             ..Drop::diced(8)
         };
-        // 32 voxels, in rows of 4, 6, 6, 6, 6 and 4: pitch 1 separates all of them. One line in each
-        // direction through the middle gives four quarters.
+        // The disc has 32 voxels, in rows of 4, 6, 6, 6, 6 and 4. Pitch 1 separates all voxels. Pitch 4 cuts
+        // once in each direction through the middle and gives four quarters.
         for (pitch, pieces) in [(1, 32), (4, 4)] {
             for side in compare_tear(&scene, pitch, Effort::default()).expect("the scene is valid")
             {

@@ -1,5 +1,5 @@
-//! Common interface of both engines' worlds, and Rapier's worlds in 2D and 3D. A macro builds the latter:
-//! `rapier2d` and `rapier3d` are two crates with equal names.
+//! Common interface of both engines' worlds, and Rapier's worlds in 2D and 3D. A macro builds Rapier's
+//! worlds, because `rapier2d` and `rapier3d` are two crates with equal names.
 
 use std::f32::consts::PI;
 
@@ -180,7 +180,8 @@ macro_rules! world {
                 elastic_damping_ratio: 0.0,
                 ..softness.map_or_else(SoftBodyMaterial::default, SoftBodyMaterial::uniform)
             };
-            // Rapier replaces the ball by the surface of the body.
+            // Takes friction and skin from a ball collider. Rapier replaces the ball's shape by the surface
+            // of the body.
             let surface = ColliderBuilder::ball(skin).friction(scene.friction);
             SoftBodyBuilder::new(mesh.positions.iter().map(|&at| vector(at) + up).collect())
                 .masses(

@@ -28,7 +28,8 @@ impl State {
         std::str::from_utf8(&self.input).map_err(|error| error.to_string())
     }
 
-    /// Stores the result, or the reason for the failure, in the output. Returns 1 for success.
+    /// Stores `came`, a result or the reason for a failure, in the output. Returns 1 for a result and 0 for a
+    /// failure.
     fn answer(&mut self, came: Result<String, String>) -> u32 {
         let went_well = came.is_ok();
         self.output = came.unwrap_or_else(|reason| reason);
@@ -36,7 +37,7 @@ impl State {
     }
 }
 
-/// Allocates an input of `length` bytes. Returns its address; 0 if there is not enough memory.
+/// Allocates an input buffer of `length` bytes. Returns its address; 0 if there is not enough memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_input(length: usize) -> *mut u8 {
     STATE.with_borrow_mut(|state| {
@@ -49,13 +50,13 @@ pub extern "C" fn checks_input(length: usize) -> *mut u8 {
     })
 }
 
-/// Returns the address of the output.
+/// Returns the address of the output buffer.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_output() -> *const u8 {
     STATE.with_borrow(|state| state.output.as_ptr())
 }
 
-/// Returns the length of the output in bytes.
+/// Returns the length of the text in the output buffer, in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_output_length() -> usize {
     STATE.with_borrow(|state| state.output.len())
@@ -88,7 +89,8 @@ pub extern "C" fn checks_verify() -> u32 {
     })
 }
 
-/// Starts the round that the input names. It is then played tick by tick with `checks_ask` and `checks_step`.
+/// Starts the round that the input names. The caller then plays the round tick by tick with `checks_ask` and
+/// `checks_step`.
 #[unsafe(no_mangle)]
 pub extern "C" fn checks_begin() -> u32 {
     STATE.with_borrow_mut(|state| match state.text().and_then(Game::begin) {

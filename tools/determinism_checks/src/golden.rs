@@ -8,7 +8,7 @@ use fuwafuwa::{
     ObjectRef, RigidBody, RigidBodyHandle, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig,
 };
 
-/// Simulation without input, and its expected hash.
+/// Golden scene: a simulation without input, and its expected hash.
 pub struct Scene {
     /// Short description, for messages.
     pub name: &'static str,
@@ -18,8 +18,8 @@ pub struct Scene {
     pub golden: u64,
 }
 
-/// All scenes. To add one, run the tests: they print the hash they found. The table is a static, because a
-/// constant would be compiled, engine included, into each crate that uses it.
+/// All golden scenes. For the hash of a new scene, run the tests, which print the hash that they found. The
+/// table is a static, because a constant would be compiled, engine included, into each crate that uses it.
 pub static SCENES: [Scene; 6] = [
     Scene {
         name: "torn disc",
@@ -97,8 +97,8 @@ fn hash_of_torn_world<D: Dim>(n: usize, ticks: u32) -> u64 {
     world.hash()
 }
 
-/// Returns the hash of a soft ball, as in the game, that was cut into pieces. They fall while a hand tears
-/// more off.
+/// Returns the hash of a soft ball, as in the game, that was cut into pieces. The pieces fall while a hand
+/// tears more pieces off.
 fn hash_of_heap() -> u64 {
     let settings = WorldConfig {
         max_substeps: MIN_SUBSTEPS,

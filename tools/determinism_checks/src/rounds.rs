@@ -1,8 +1,9 @@
-//! Rounds played by bots, without the window of the game. They are recorded natively and verified in
-//! browsers, and the reverse. They also show whether a browser computes a tick fast enough.
+//! Rounds played by bots, without the window of the game. Rounds recorded natively are verified in browsers,
+//! and rounds recorded in browsers are verified natively. The rounds also show whether a browser computes a
+//! tick fast enough.
 //!
 //! `cargo xtask web --test` builds this crate as a WebAssembly module with the profile of the game.
-//! `bits.mjs` and `speed.mjs` in `tools/xtask/web/test` load it into browsers and use the
+//! `bits.mjs` and `speed.mjs` in `tools/xtask/web/test` load the module into browsers and use the
 //! [`exports`](crate::exports). The example `replays` records and verifies natively.
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
@@ -13,15 +14,16 @@ pub const ROUNDS: usize = 20;
 /// Maximum number of ticks of a round of a series: ten seconds, enough for a body to tear.
 pub const MOST_TICKS: usize = 600;
 
-/// Returns the rounds of a series, in the format of [`Game::begin`]. They contain every level in 2D and 3D.
-/// The bots differ from those in the previous and next series, and all seeds differ.
+/// Returns the rounds of series number `number`, in the format of [`Game::begin`]. A series contains every
+/// level in 2D and 3D. On a level with a basket, the bot differs from that in the previous and the next
+/// series. All seeds differ.
 pub fn series(number: usize) -> Vec<String> {
     let levels: Vec<&str> = NAMED.iter().chain(&NAMED_3D).map(|(id, _)| *id).collect();
     let game = |round: usize| {
         let (level, lap) = (levels[round % levels.len()], round / levels.len());
         let routes = Level::open(level).map_or(0, |level| level.routes().len());
         let bot = match (routes, (round + lap + number) % 2) {
-            // Bots other than `random` need a basket.
+            // Selects `random` for levels without a basket, because the other bots need one.
             (0, _) => "random",
             (_, 0) => "squeeze",
             _ => "shave",
@@ -75,7 +77,7 @@ impl Game {
     /// Returns the replay of the round until now, as text.
     ///
     /// # Errors
-    /// Returns the reason why the replay could not be played again.
+    /// Returns the reason why the replay would be invalid.
     pub fn replay(&self) -> Result<String, String> {
         let replay = self.round.replay();
         replay.text_to_keep().map_err(|error| error.to_string())

@@ -12,7 +12,8 @@ fn two_series_play_every_level_with_both_bots() {
         Some(pair)
     });
     let pairs: BTreeSet<&str> = pairs.collect();
-    // There are 14 levels. Only one bot plays the two levels without a basket.
+    // There are 14 levels. Two bots play each of them, except the two levels without a basket, which only
+    // `random` plays.
     assert_eq!(pairs.len(), 14 + 12, "{pairs:?}");
     let all: BTreeSet<&String> = first.iter().chain(&second).collect();
     assert_eq!(all.len(), 2 * ROUNDS, "a round occurs twice");

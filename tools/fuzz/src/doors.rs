@@ -100,8 +100,8 @@ pub fn replay(bytes: &[u8]) -> bool {
     watch(replay)
 }
 
-/// Reads a link. `bytes` are the letter of its kind and the payload, without the checksum, which noise would
-/// never match.
+/// Reads a link. `bytes` are the letter of its kind and the payload. The checksum is added here, because
+/// random changes would make it invalid.
 pub fn link(bytes: &[u8]) -> bool {
     let Some((&kind, sent)) = bytes.split_first() else {
         return false;
@@ -112,7 +112,8 @@ pub fn link(bytes: &[u8]) -> bool {
         return false;
     };
     match written(&read) {
-        // The text of a scene has default values written out, which may make it too long.
+        // Accepts that a level cannot be written again: with all default values written out, its text may be
+        // too long.
         Err(LinkError::TooLong { .. } | LinkError::Level(_)) => {}
         again => {
             let again = again.expect("a link that was read can be written");
@@ -145,8 +146,8 @@ pub fn recording(bytes: &[u8]) -> bool {
     }
 }
 
-/// Reads the recording of a procedure. `bytes` are its decompressed content, without the checksum, which
-/// noise would never match.
+/// Reads the recording of a procedure. `bytes` are its decompressed content without the checksum, which
+/// random changes would make invalid.
 pub fn procedure(bytes: &[u8]) -> bool {
     let Ok(recording) = Procedure::read_inside(bytes) else {
         return false;
@@ -168,8 +169,8 @@ pub fn procedure(bytes: &[u8]) -> bool {
     is_as_it_was
 }
 
-/// Loads a snapshot. `bytes` are the dimension and the state, without the checksum, which noise would never
-/// match.
+/// Loads a snapshot. `bytes` are the dimension and the state without the checksum, which random changes would
+/// make invalid.
 pub fn snapshot(bytes: &[u8]) -> bool {
     let Some((&dim, state)) = bytes.split_first() else {
         return false;
@@ -191,7 +192,7 @@ fn written(link: &Link) -> Result<String, LinkError> {
     }
 }
 
-/// Plays a tick of a small level.
+/// Plays a tick of a level if the level is small.
 fn begin(level: Level) {
     if is_small(&level) {
         let mut round = AnyRound::new(Arc::new(level));
@@ -199,7 +200,7 @@ fn begin(level: Level) {
     }
 }
 
-/// Plays the first ticks of a replay. Returns whether they match it.
+/// Plays the first ticks of a replay. Returns whether they match the recorded hashes.
 fn watch(replay: Replay) -> bool {
     let Ok(mut playback) = Playback::new(Arc::new(replay)) else {
         return false;
@@ -216,7 +217,7 @@ fn text(bytes: &[u8]) -> Option<&str> {
     std::str::from_utf8(bytes).ok()
 }
 
-/// Loads the files that scenes may name.
+/// Loads a file by the name that a scene gives.
 fn fetch(name: &str) -> io::Result<Vec<u8>> {
     match name {
         "cat.png" => Ok(CAT.to_vec()),
@@ -231,7 +232,7 @@ fn is_small(level: &Level) -> bool {
     bodies.len() <= 4 && bodies.iter().all(|body| across(body) <= 12)
 }
 
-/// Adds a body of this shape to a world and plays a tick.
+/// Adds a soft body with the voxels of `grid` to a world and plays a tick.
 fn drop_in<D: Dim>(grid: VoxelGrid<D>) {
     if grid.solid_count() > FEW_VOXELS {
         return;

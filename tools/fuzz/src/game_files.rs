@@ -1,4 +1,4 @@
-//! Files that the game itself writes, and which may have been edited.
+//! Doors for files that the game itself writes and that users may have edited.
 
 use crate::seeds::small_levels;
 use tamaire::records::Records;

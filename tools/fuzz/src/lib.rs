@@ -19,7 +19,7 @@ mod tick;
 pub struct Door {
     /// Kind of input, such as `png`; the value of DOOR for the fuzzer.
     pub name: &'static str,
-    /// Valid input to start from, small enough that thousands of variants are fast.
+    /// Valid inputs that are then damaged. They are small, so that thousands of variants are fast.
     pub seeds: fn() -> Vec<Vec<u8>>,
     /// Processes bytes. Returns whether they were accepted.
     pub enter: fn(&[u8]) -> bool,

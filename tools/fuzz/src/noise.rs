@@ -29,14 +29,14 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// Creates a generator from valid bytes and a seed for the random numbers.
+    /// Creates a generator from valid inputs `seeds`, and the seed `number` for the random changes.
     pub fn of(seeds: Vec<Vec<u8>>, number: u64) -> Self {
         let words = words(&seeds).into_iter().map(Vec::from).collect();
         let rng = Rng::with_seed(number);
         Self { rng, seeds, words }
     }
 
-    /// Returns a random seed with one to four changes.
+    /// Returns one of the valid inputs, chosen at random, with one to four changes.
     pub fn bytes(&mut self) -> Vec<u8> {
         let mut bytes = self.any_seed();
         for _ in 0..self.rng.usize(1..=4) {
@@ -96,7 +96,7 @@ impl Noise {
     }
 }
 
-/// Returns the words that occur in valid texts, and some syntax of TOML.
+/// Returns the words that occur in the valid texts `seeds`, and some syntax of TOML.
 pub fn words(seeds: &[Vec<u8>]) -> BTreeSet<&[u8]> {
     let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || b"_-".contains(byte);
     let words = seeds

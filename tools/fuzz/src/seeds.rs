@@ -1,4 +1,4 @@
-//! Small valid input for each door. Large input is tested in the crate that reads it.
+//! Small valid input for each door. Large input is tested in the crates that read it.
 
 use base64::Engine;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
@@ -92,7 +92,7 @@ pub fn links() -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// Returns the part of a link that the door takes: kind and payload.
+/// Returns the part of a link that the door `link` takes: kind and payload.
 fn sent(link: &str) -> Vec<u8> {
     let bytes = BASE64.decode(&link[2..link.len() - 1]);
     let bytes = bytes.expect("a link consists of base64url");
@@ -241,14 +241,15 @@ fn text_of(scene: &Scene) -> Vec<u8> {
         .into_bytes()
 }
 
-/// Returns the snapshot of a scene after a tick, in the form that the door takes.
+/// Returns the snapshot of a scene after a tick, in the form that the door `snapshot` takes.
 fn saved<D: Dim>(scene: &Scene) -> Vec<u8> {
     let mut world = scene.build::<D>().expect("a small scene can be built");
     world.step();
     state_of(&world)
 }
 
-/// Returns the part of a snapshot that the door takes: the dimension, and the state after the checksum.
+/// Returns the part of a snapshot that the door `snapshot` takes: the dimension, and the state after the
+/// checksum.
 fn state_of<D: Dim>(world: &World<D>) -> Vec<u8> {
     let bytes = snapshot::save(world);
     [&bytes[8..9], &bytes[17..]].concat()
@@ -316,7 +317,8 @@ fn scan(is_big_endian: bool) -> Vec<u8> {
     ] {
         put(at, &i16::to_le_bytes(number));
     }
-    // Offset of the voxels, slope and intercept of the values, and an affine matrix with some shear.
+    // Header fields of a scan: offset of the voxels, slope and intercept of the values, and an affine matrix
+    // with some shear.
     let reals = [
         (108, 352.0),
         (112, 0.5),

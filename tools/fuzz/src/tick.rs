@@ -3,7 +3,7 @@
 use fuwafuwa::{Dim, World};
 use fuwafuwa_scenes::Scene;
 
-/// Maximum number of voxels of a world that a door builds. Larger worlds take long and are tested elsewhere.
+/// Maximum number of voxels of a world that a door builds. Larger worlds would take too long.
 pub const FEW_VOXELS: usize = 1 << 12;
 
 /// Builds a scene and plays a tick. Returns whether the scene could be built.

@@ -45,7 +45,8 @@ fn every_door_accepts_its_seeds() {
     }
 }
 
-/// Each file name begins with its door, for example `settings-one-bad-value-of-thousands`.
+/// Passes the files of the folder `found` through their doors. A file name begins with the name of the door,
+/// for example `settings-one-bad-value-of-thousands`.
 #[test]
 fn earlier_failures_are_handled_quickly() {
     for (name, bytes) in found() {
@@ -54,7 +55,7 @@ fn earlier_failures_are_handled_quickly() {
         let start = Instant::now();
         enter(door, &bytes);
         let seconds = start.elapsed().as_secs_f32();
-        // Generous limit: debug builds, with other tests in parallel.
+        // Allows much time, because debug builds are slow and other tests run in parallel.
         assert!(seconds < 20.0, "{name}: {seconds} s");
     }
 }
@@ -64,7 +65,7 @@ fn noise_causes_no_panic() {
     for door in DOORS {
         let mut noise = Noise::of((door.seeds)(), 1);
         let taken = (0..INPUTS).filter(|_| enter(door, &noise.bytes())).count();
-        // With fewer accepted inputs, the code behind the first check would not be tested.
+        // Requires enough accepted inputs: rejected inputs do not reach the code behind the first check.
         assert!(
             taken > INPUTS / 200,
             "{}: only {taken} inputs were accepted",

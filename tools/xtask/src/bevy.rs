@@ -10,7 +10,7 @@ use std::process::Command;
 pub enum Bevy {
     /// Checks format, lints, tests without a window and documentation, and compiles the examples.
     Check,
-    /// Renders pictures of its scene on a virtual display.
+    /// Renders pictures of the plugin's example scene on a virtual display.
     Pictures,
 }
 

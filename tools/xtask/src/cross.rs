@@ -1,4 +1,4 @@
-//! Cross compilation for other systems, and running their programs here.
+//! Cross compilation for other systems, and running the compiled programs on this machine.
 
 use crate::debian;
 use crate::packages::{IfMissing, MissingItem, apt_get, install_arguments, list_lacks};
@@ -8,15 +8,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// System for which programs can be built and run from here.
+/// Target system for which this machine can build programs and run them in an emulator.
 pub struct System {
-    /// Name for messages.
+    /// Name of the system, for messages.
     pub name: &'static str,
     /// Rust's target triple.
     pub triple: &'static str,
     /// Linker, and the Debian package that contains it.
     linker: (&'static str, &'static str),
-    /// Other required programs or files, each with its Debian package.
+    /// Other programs or files that the build requires, each with its Debian package.
     compilers: &'static [(&'static str, &'static str)],
     /// Emulator and its Debian package; `words` are its arguments.
     runner: (&'static str, &'static str),
@@ -47,26 +47,26 @@ pub const WINDOWS: System = System {
     words: "",
 };
 
-/// Use of a system.
+/// Intended use of a target system.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Wanted {
-    /// Build programs for it.
+    /// Build programs for the system.
     Build,
-    /// Build its programs and run them here.
+    /// Build programs for the system and run them on this machine.
     Run,
 }
 
-/// Toolchain for a system.
+/// Toolchain for a target system.
 pub struct Compiler {
     pub system: &'static System,
-    /// Sources of Debian's standard library. `None` if the toolchain in use contains a built standard
-    /// library.
+    /// Sources of the standard library, from Debian, from which cargo builds it. `None` if the toolchain in
+    /// use contains a built standard library.
     pub sources: Option<PathBuf>,
 }
 
 impl System {
-    /// Returns the toolchain for this system. If there is none, the error begins with `undone`, the task that
-    /// was not done.
+    /// Returns the toolchain for this system. If there is none, the error begins with `undone`, which names
+    /// the task that needed it.
     pub fn compiler(
         &'static self,
         wanted: Wanted,
@@ -77,8 +77,8 @@ impl System {
         if if_missing == IfMissing::Install
             && let Err(lacks) = &found
         {
-            // Package lists of fresh machines are old or missing. If the update fails, the old lists may
-            // still suffice.
+            // Updates the package lists, which are old or missing on fresh machines. If the update fails, the
+            // old lists may still suffice.
             apt_get(&["update", "--quiet"]);
             let names = lacks.iter().map(|lack| lack.package.as_str());
             apt_get(&install_arguments(names));
@@ -100,7 +100,7 @@ impl System {
         let runner = (wanted == Wanted::Run).then_some(self.runner);
         let mut lacks: Vec<MissingItem> = programs
             .chain(runner)
-            // An absolute path is checked as it is, not on the path of programs.
+            // Looks for a program on the search path; an absolute path is checked as it is.
             .filter(|(program, _)| !is_on_path(program))
             .map(|(program, package)| MissingItem::new(format!("{program} not found"), package))
             .collect();
@@ -128,7 +128,7 @@ impl System {
         root().join(target()).join("other").join(self.triple)
     }
 
-    /// Returns the release build of the game for Windows, if it was built.
+    /// Returns the path of the game's release build for Windows, if it exists.
     fn handed_out(&self) -> Option<PathBuf> {
         let game = self.folder().join("dist/tamaire.exe");
         game.is_file().then_some(game)
@@ -178,7 +178,8 @@ impl Compiler {
                 format!("CARGO_TARGET_{name}_RUNNER"),
                 format!("{} {runner_words}", runner.0).trim(),
             )
-            // Flags for the native build, such as a target-cpu, do not apply here.
+            // Removes flags for the native build, such as a target-cpu, which do not apply to the target
+            // system.
             .env_remove("RUSTFLAGS")
             .env_remove("CARGO_ENCODED_RUSTFLAGS");
         if self.sources.is_some() {
@@ -219,8 +220,8 @@ pub fn check(system: &'static System, if_missing: IfMissing) -> Result<(), Failu
     }
 }
 
-/// Verifies recorded rounds with the release build of the game, in a folder with spaces and Japanese
-/// characters.
+/// Verifies recorded rounds with the release build of the game. The replays lie in a folder whose name has
+/// spaces and Japanese characters.
 fn watch_all(system: &System, game: &Path, replays: &Path) -> Result<(), Failure> {
     let folder = replays.join("遊び 場");
     let copied = fs::create_dir_all(&folder).and_then(|()| {

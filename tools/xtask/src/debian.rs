@@ -1,13 +1,14 @@
 //! Rust toolchains for other targets. rustup's toolchain builds for a target after `rustup target add`.
-//! Otherwise Debian's packages are used: a compiler, and the sources of the standard library, which cargo
-//! then builds, too.
+//! Without it, Debian's packages are used: a compiler and the sources of the standard library, which cargo
+//! then builds.
 
 use crate::packages::MissingItem;
 use crate::shell::output_of;
 use std::env;
 use std::path::{Path, PathBuf};
 
-/// Debian's compiler, which is usually not the one on the path.
+/// Debian's compiler. Its absolute path is given, because another compiler usually comes first on the search
+/// path.
 const RUSTC: &str = "/usr/bin/rustc";
 /// Variables that select Debian's compiler and permit `-Z` options, which stable compilers otherwise refuse.
 pub const ENVIRONMENT: [(&str, &str); 2] = [("RUSTC", RUSTC), ("RUSTC_BOOTSTRAP", "1")];
@@ -16,9 +17,9 @@ pub const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 
 /// Debian's compiler.
 pub struct Found {
-    /// Major version of its LLVM, which also names the matching linker.
+    /// Major version of the compiler's LLVM, which also names the matching linker.
     pub llvm: String,
-    /// Sources of its standard library.
+    /// Sources of the compiler's standard library.
     pub sources: Result<PathBuf, MissingItem>,
 }
 

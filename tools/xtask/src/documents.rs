@@ -1,7 +1,7 @@
 //! Documentation of the workspace, without warnings and without dead links.
 //!
-//! Units stand in brackets, such as `[m]`, and rustdoc takes them for links. The crates therefore allow broken links,
-//! and this module finds them: every unresolved link except a unit is an error.
+//! rustdoc takes units in brackets, such as `[m]`, for links. The crates therefore allow broken links, and
+//! this module finds them: every unresolved link except a unit is an error.
 
 use crate::shell::{Failure, cargo, root, show};
 use std::process::Stdio;
@@ -50,7 +50,7 @@ pub fn check_documents() -> Result<(), Failure> {
     }
 }
 
-/// Returns the target of a link that the message reports as unresolved.
+/// Returns the target of a link that a rustdoc message reports as unresolved.
 fn broken_link(message: &str) -> Option<&str> {
     let (_, rest) = message.split_once("unresolved link to `")?;
     rest.split_once('`').map(|(target, _)| target)

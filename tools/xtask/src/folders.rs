@@ -5,7 +5,8 @@ use crate::shell::{root, target};
 use std::env;
 use std::path::{Path, PathBuf};
 
-/// Returns local folders with their neutral names. If a path is in several of them, the last one counts.
+/// Returns local folders with their neutral names. If a path is in several of the folders, the last one
+/// replaces it.
 pub fn names() -> Vec<(String, &'static str)> {
     let home = env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(env::home_dir()?.join(".cargo")));
@@ -19,8 +20,8 @@ pub fn names() -> Vec<(String, &'static str)> {
     names
 }
 
-/// Returns rustc flags in the format of `CARGO_ENCODED_RUSTFLAGS`, which replaces all other flags. The
-/// separator U+001F does not occur in paths.
+/// Returns rustc flags in the format of the variable `CARGO_ENCODED_RUSTFLAGS`. `names` are local folders and
+/// the neutral names that replace them. The separator of the flags is U+001F, which does not occur in paths.
 pub fn encoded<'a>(flags: impl IntoIterator<Item = &'a str>, names: &[(String, &str)]) -> String {
     let flags = flags.into_iter().map(str::to_string);
     let names = names

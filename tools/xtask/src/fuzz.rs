@@ -1,5 +1,6 @@
 //! Fuzzing of the entry points ("doors") of `tools/fuzz` with libFuzzer. A stable compiler suffices, because
-//! the coverage passes are part of every LLVM; cargo-fuzz needs a nightly compiler only for sanitizers.
+//! every LLVM contains the coverage passes. cargo-fuzz needs a nightly compiler only for sanitizers, which
+//! are not used here.
 
 use crate::packages::{IfMissing, Purpose, provide};
 use crate::shell::{Failure, cargo, execute, output_of, root, target};
@@ -32,7 +33,7 @@ struct Outcome {
     log: String,
 }
 
-/// Fuzzes the named doors, or all. The given number of minutes is divided among the doors.
+/// Fuzzes the named doors, or all doors if none is named. The duration is divided equally among the doors.
 pub fn run(words: &[String]) -> Result<(), Failure> {
     let (minutes, doors) = parse_arguments(words).map_err(Failure::failed)?;
     provide(&[Purpose::Build, Purpose::Fuzzing], IfMissing::Install);
@@ -85,7 +86,7 @@ fn build() -> Result<(PathBuf, PathBuf), Failure> {
     let mut command = cargo();
     command.args(["build", "--profile", "fuzz", "--package", "fuzz_targets"]);
     command.args(["--bin", "fuzz"]);
-    // With an explicit target, the flags do not apply to build scripts.
+    // Gives the target explicitly, so that the flags do not apply to build scripts.
     command
         .args(["--target", host, "--target-dir"])
         .arg(&folder);
@@ -101,7 +102,7 @@ fn build() -> Result<(PathBuf, PathBuf), Failure> {
     Ok((program, folder))
 }
 
-/// Returns the names of all doors. Each one has a folder of seeds.
+/// Returns the names of all doors, which are the names of the folders of seeds.
 fn all_doors(seeds: &Path) -> Result<Vec<String>, Failure> {
     let folders = fs::read_dir(seeds).map_err(|error| Failure::failed(error.to_string()))?;
     let folders = folders.flatten().filter(|entry| entry.path().is_dir());
@@ -147,8 +148,8 @@ fn row(outcome: &Outcome) -> String {
             .trim()
             .to_string()
     };
-    // Returns the last value of a name in lines such as `cov: 50 ft: 60 corp: 10/1Kb`. Of `10/1Kb` only the
-    // 10 counts.
+    // Returns the last value of a name in libFuzzer's lines, such as `cov: 50 ft: 60 corp: 10/1Kb`. Of
+    // `10/1Kb` the result is 10.
     let last = |name: &str| {
         let after = outcome
             .log

@@ -1,9 +1,9 @@
 //! Tests of force feedback against a real Linux kernel in a virtual machine. They check which commands a
-//! device driver receives, and that none follow after a process dies or hangs.
+//! device driver receives. They also check that no command follows after a process dies or hangs.
 //!
 //! The machine is QEMU without hardware acceleration, because acceleration is not available everywhere. Its
-//! kernel is that of Debian or Ubuntu. Kernel and busybox, which starts the test, are unpacked in the target
-//! folder and not installed.
+//! kernel is that of Debian or Ubuntu. Kernel and busybox are unpacked in the target folder and not
+//! installed; busybox starts the test.
 
 use crate::packages::{
     self, IfMissing, MissingItem, Purpose, apt_get, install_arguments, list_lacks,
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 const QEMU: &str = "qemu-system-x86_64";
-/// Packages that depend on the latest kernel, of Debian and of Ubuntu.
+/// Packages of Debian and Ubuntu that depend on the package of the latest kernel.
 const LATEST: [&str; 2] = ["linux-image-amd64", "linux-image-virtual"];
 const BUSYBOX: &str = "busybox-static";
 /// Script that downloads a package and extracts the named files without their folders.
@@ -25,10 +25,10 @@ const FETCH: &str = r#"
         dpkg-deb --fsys-tarfile "$package"_*.deb | tar -x --wildcards --transform 's,.*/,,' "$@"
     rm -f "$package"_*.deb
 "#;
-/// If SDL is built with udev, force feedback does not work without this library, even though no udev daemon
-/// runs in the machine.
+/// Library for udev. An SDL built with udev gives no force feedback without this library, even though no udev
+/// daemon runs in the virtual machine.
 const UDEV: &str = "/lib/x86_64-linux-gnu/libudev.so.1";
-/// Timeout of the machine [s]; it usually takes a minute or two.
+/// Time limit for a run of the virtual machine [s]; a run usually takes a minute or two.
 const PATIENCE: &str = "400";
 
 /// Builds the tests and runs them in the machine; fails if a test fails.
@@ -38,8 +38,8 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     if if_missing == IfMissing::Install
         && let Err(lacks) = &found
     {
-        // Package lists of fresh machines are old or missing. If the update fails, the old lists may still
-        // suffice.
+        // Updates the package lists, which are old or missing on fresh machines. If the update fails, the old
+        // lists may still suffice.
         apt_get(&["update", "--quiet"]);
         lacks.iter().for_each(|lack| provide(&folder, lack));
         found = find_guest(&folder);
@@ -55,15 +55,15 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     boot(&folder, &guest.kernel)
 }
 
-/// Contents of the machine except for the test.
+/// Contents of the virtual machine except for the test.
 struct Guest {
     kernel: PathBuf,
-    /// Kernel modules. Empty if they are built into the kernel, as in Ubuntu's.
+    /// Kernel modules to load. Empty if the kernel contains them, as Ubuntu's does.
     modules: Vec<PathBuf>,
     busybox: PathBuf,
 }
 
-/// Returns the contents of the machine, or everything that is missing.
+/// Returns the contents of the virtual machine, or all items that are missing.
 fn find_guest(folder: &Path) -> Result<Guest, Vec<MissingItem>> {
     let mut lacks = Vec::new();
     if !answers(QEMU) {
@@ -105,7 +105,7 @@ fn files(folder: &Path, name: &str) -> Vec<PathBuf> {
         .collect()
 }
 
-/// Installs QEMU, or downloads other contents of the machine. Failures are only reported.
+/// Provides a missing item: installs QEMU, or downloads any other item. Failures are only reported.
 fn provide(folder: &Path, lack: &MissingItem) {
     match lack.package.as_str() {
         BUSYBOX => fetch(folder, BUSYBOX, &["*/bin/busybox"]),
@@ -175,7 +175,7 @@ fn executable_of(messages: &str) -> Option<PathBuf> {
     rest.split_once('"').map(|(path, _)| PathBuf::from(path))
 }
 
-/// Packs the initial RAM disk.
+/// Packs the initial RAM disk of the virtual machine.
 fn pack(folder: &Path, guest: &Guest, test: &Path) -> io::Result<()> {
     let disk = folder.join("disk");
     if disk.exists() {
@@ -219,10 +219,10 @@ fn libraries(ldd: &str) -> Vec<&str> {
     words.filter(|word| word.starts_with('/')).collect()
 }
 
-/// Runs the machine until it powers off.
+/// Runs the virtual machine until it powers off.
 fn boot(folder: &Path, kernel: &Path) -> Result<(), Failure> {
     let status = folder.join("status");
-    // Removes the result of an earlier run.
+    // Removes the result of an earlier run, which must not be taken for that of this run.
     let _ = fs::remove_file(&status);
     let mut machine = Command::new("timeout");
     machine

@@ -103,7 +103,7 @@ fn play(if_missing: IfMissing, words: &[String]) -> ExitCode {
     }
 }
 
-/// Converts the exit status of a program. A killed program has none.
+/// Converts the exit status of a program, which is `None` for a killed program.
 fn exit_code(code: Option<i32>) -> ExitCode {
     let code = code.and_then(|code| u8::try_from(code).ok());
     ExitCode::from(code.unwrap_or(FAILED))
@@ -142,8 +142,8 @@ const CHECK: &[Step] = &[
     ),
 ];
 
-// All features are enabled, as in CHECK, because other features would recompile everything. CHECK covers the
-// examples.
+// Enables all features, as `CHECK` does, because other features would recompile everything. The examples are
+// missing here because `CHECK` compiles them.
 const TEST: &[Step] = &[
     (
         "test --workspace --all-features --tests",

@@ -27,16 +27,17 @@ const CRATES: [(&str, &[&str]); 9] = [
     ("devices/sticks", &["src", "examples"]),
 ];
 
-/// Published crate in a separate workspace, with the folders in its package. Cargo can pack it only once the
-/// crates of this workspace are on a registry. Until then, only the contents of its package are checked.
+/// Published crate in a separate workspace, with the folders in its package. Cargo can pack this crate only
+/// once the crates of the main workspace are on a registry. Until then, only the contents of its package are
+/// checked.
 const BEVY: (&str, &[&str]) = ("plugins/bevy_fuwafuwa", &["src"]);
 
-/// The name of the crate in a folder.
+/// Returns the name of the crate in a folder.
 fn name_of(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }
 
-/// Allowed files of a package outside of its folders. Cargo writes the first four.
+/// Files that a package may contain outside of its folders. Cargo writes the first four.
 const FILES: [&str; 7] = [
     ".cargo_vcs_info.json",
     "Cargo.lock",
@@ -72,8 +73,8 @@ pub fn run(package: Package) -> Result<(), Failure> {
     }
 }
 
-/// Returns the rustup argument that selects a Rust version; empty if that version is active. Without rustup,
-/// programs accept no such argument.
+/// Returns the rustup argument that selects a Rust version, such as `+1.96`. The result is empty if that
+/// version is active, because cargo without rustup accepts no such argument.
 fn toolchain_of(version: &str) -> Option<Vec<String>> {
     let candidates = [
         Vec::new(),
@@ -88,11 +89,11 @@ fn toolchain_of(version: &str) -> Option<Vec<String>> {
     candidates.into_iter().find(is_it)
 }
 
-/// Packs all crates at once, so that they find each other although none is published.
+/// Packs all crates in one command, so that they find each other although none is published.
 fn pack(words: &[&str], toolchain: &[String]) -> Result<(), Failure> {
     let mut command = match toolchain {
         [] => cargo(),
-        // The running cargo has another version. The `cargo` of rustup can select one.
+        // Uses the `cargo` of rustup, which can select a version. The running cargo is another version.
         _ => Command::new("cargo"),
     };
     command.args(toolchain);

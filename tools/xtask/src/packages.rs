@@ -5,16 +5,16 @@ use std::env;
 use std::io::{self, IsTerminal, Write};
 use std::process::{Command, Stdio};
 
-/// Reaction to a missing package.
+/// Reaction to a missing Debian package.
 #[derive(Debug, PartialEq, Clone, Copy)]
 pub enum IfMissing {
-    /// Print its name and continue.
+    /// Print the name of the package and continue.
     Say,
-    /// Install it with apt-get, after confirmation if there is a terminal.
+    /// Install the package with apt-get, after confirmation if there is a terminal.
     Install,
 }
 
-/// Purpose of a package.
+/// Purpose for which a Debian package is needed.
 #[derive(Debug, PartialEq, Clone, Copy)]
 pub enum Purpose {
     /// Compile the game.
@@ -41,16 +41,16 @@ pub enum Purpose {
     Paging,
 }
 
-/// Test for an installed package.
+/// Test for whether a package is installed.
 #[derive(Debug, PartialEq, Clone, Copy)]
 enum Seen {
-    /// The program runs, whether or not it comes from this package.
+    /// Passes if this program runs, whether or not it comes from the package.
     Program(&'static str),
-    /// dpkg has installed it.
+    /// Passes if dpkg lists the package as installed.
     Installed,
 }
 
-/// Package of Debian and Ubuntu.
+/// Package of Debian or Ubuntu that a task needs.
 #[derive(Debug, PartialEq)]
 struct Package {
     name: &'static str,
@@ -74,8 +74,8 @@ const fn package(
     }
 }
 
-/// All packages, determined by building and running in a minimal Debian root. The C compiler is omitted: this
-/// program could not have been linked without it.
+/// All packages that the tasks need, determined by building and running in a minimal Debian root. The C
+/// compiler is omitted, because this program could not have been linked without it.
 #[rustfmt::skip]
 const PACKAGES: &[Package] = {
     use Purpose::{Browsing, Build, Drawing, Fuzzing, Listing, Packing, Paging, Serving, Staging, Window, Zipping};
@@ -123,7 +123,7 @@ impl MissingItem {
     }
 }
 
-/// Formats a line for each item.
+/// Formats the missing items, one per line.
 pub fn list_lacks(lacks: &[MissingItem]) -> String {
     let lines: Vec<String> = lacks
         .iter()
@@ -132,8 +132,8 @@ pub fn list_lacks(lacks: &[MissingItem]) -> String {
     lines.join("\n")
 }
 
-/// Provides the packages for these purposes as far as possible. Missing packages are only reported, because
-/// this list may not fit every machine.
+/// Installs the packages for these purposes as far as possible. Missing packages are only reported, because
+/// the list may not fit every machine.
 pub fn provide(purposes: &[Purpose], if_missing: IfMissing) {
     if !answers("dpkg-query") {
         return say_elsewhere(purposes);
@@ -189,7 +189,7 @@ pub fn apt_get(arguments: &[&str]) -> bool {
     } else {
         let mut sudo = Command::new("sudo");
         if !io::stdin().is_terminal() {
-            // Without a terminal, sudo cannot ask for a password.
+            // Keeps sudo from asking for a password, because there is no terminal.
             sudo.arg("--non-interactive");
         }
         sudo.arg("apt-get");
@@ -218,7 +218,7 @@ fn missing_on_debian(purposes: &[Purpose]) -> Vec<&'static Package> {
     let statuses = Command::new("dpkg-query")
         .args(["--show", "--showformat=${Package} ${db:Status-Status}\\n"])
         .args(PACKAGES.iter().map(|package| package.name))
-        // dpkg-query complains about each unknown package.
+        // Hides the complaints of dpkg-query, one for each unknown package.
         .stderr(Stdio::null())
         .output()
         .map_or_else(|_| Vec::new(), |output| output.stdout);
@@ -231,13 +231,14 @@ fn missing_on_debian(purposes: &[Purpose]) -> Vec<&'static Package> {
 
 /// Whether a package is installed. `statuses` are lines of name and status from dpkg-query.
 fn is_installed(statuses: &str, name: &str) -> bool {
-    // A package of two architectures has two lines.
+    // Requires at least one line with the name: a package installed for two architectures has two.
     let mut lines = statuses.lines().filter_map(|line| line.split_once(' '));
     lines.any(|line| line == (name, "installed"))
 }
 
-/// Lists required packages on systems without apt. Only programs can be tested there. Other Linux systems
-/// name libraries differently, so all libraries are listed; macOS and Windows contain the libraries.
+/// Lists required packages on systems without apt. Programs are listed only if missing. Libraries are always
+/// listed on other Linux systems, which name them differently. On macOS and Windows only cmake is listed,
+/// because these systems contain the libraries.
 fn say_elsewhere(purposes: &[Purpose]) {
     let lacks = missing(purposes, |package| match package.seen {
         Seen::Program(program) => answers(program),
@@ -273,7 +274,7 @@ fn agreed(line: &str) -> bool {
     let heard = io::stderr()
         .flush()
         .and_then(|()| io::stdin().read_line(&mut answer));
-    // Zero bytes, without even an end of line, mean that the terminal was closed.
+    // An answer of zero bytes, without even an end of line, counts as no: the terminal was closed.
     heard.is_ok_and(|bytes| bytes > 0) && is_yes(&answer)
 }
 

@@ -1,5 +1,5 @@
-//! Release files: packages for players, and data to verify them. If a part cannot be built on this machine,
-//! it is reported and the other parts continue.
+//! Release files: packages for players, and data to verify the packages. If a part cannot be built on this
+//! machine, its failure is reported and the other parts continue.
 
 mod files;
 mod kit;
@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::time::Instant;
 
-/// Maximum size of a download [bytes], some seconds on a home connection.
+/// Maximum size of a download for players [bytes]. It takes some seconds on a home connection.
 const MOST_BYTES: u64 = 12_000_000;
 
 /// Parts of a release to build.
@@ -32,9 +32,9 @@ pub struct ReleaseParts {
 /// Part of a release.
 struct Part {
     name: &'static str,
-    /// Description of its result.
+    /// Description of the part's result.
     what: &'static str,
-    /// Purposes of the packages that it needs, besides a compiler.
+    /// Purposes of the Debian packages that the part needs, besides a compiler.
     needs: &'static [Purpose],
     make: fn(&mut ReleaseBuild) -> Result<(), Failure>,
 }
@@ -56,10 +56,10 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     PARTS.iter().map(|part| part.name)
 }
 
-/// Result of a part.
+/// Result of building a part.
 enum PartResult {
     Made,
-    /// It existed already, built from the same commit.
+    /// The files of the part exist already, built from the same commit.
     There,
     Not(Failure),
 }
@@ -133,7 +133,8 @@ fn make(part: &Part, kit: &mut ReleaseBuild) -> PartResult {
     }
 }
 
-/// If packages are missing, marks a failure as caused by this machine and names the packages.
+/// Adds the missing packages `lacks` to a failure and marks it as caused by this machine. Without missing
+/// packages, the failure is unchanged.
 fn for_lack(failure: Failure, lacks: &[&str]) -> Failure {
     match lacks {
         [] => failure,

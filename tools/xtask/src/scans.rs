@@ -7,11 +7,11 @@ use std::io;
 use std::path::Path;
 use std::process::Command;
 
-/// Version and SHA-256 of the package, as pip verifies it.
+/// Version of the nilearn package, and its SHA-256, which pip verifies.
 const PACKAGE: &str = "nilearn==0.14.1 \
     --hash=sha256:725206484e9fb3f6691f9c2d20204a068759d5072f12055324702ee0cb2bbe8a\n";
 
-/// Licence text that must accompany every copy.
+/// Licence text that must accompany every copy of the scans.
 const LICENCE: &str = include_str!("scans/MNI152-LICENCE.txt");
 
 /// Script that extracts the scans and their documentation from the package, without its folders.

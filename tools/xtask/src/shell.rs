@@ -40,11 +40,12 @@ pub fn cargo() -> Command {
     Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// Prints the command, and runs it at the root of the workspace. `hint` is the advice if it fails.
+/// Prints the command, and runs it at the root of the workspace. `hint` is the advice that is printed if it
+/// fails.
 pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
     let line = show(command);
     eprintln!("xtask: {line}");
-    // The failure never has the status of the command, which could equal `CANNOT`.
+    // Gives the failure the status [`FAILED`]. The command's own status could equal [`CANNOT`].
     let failure = |how: String| Failure::failed(format!("`{line}` {how}\n       {hint}"));
     match command.current_dir(root()).status() {
         Ok(status) if status.success() => Ok(()),
@@ -80,7 +81,7 @@ pub fn root() -> &'static Path {
         .expect("xtask is two folders below the root of the workspace")
 }
 
-/// Target folder, relative to the root unless it is absolute.
+/// Cargo's target folder, relative to the root of the workspace unless the path is absolute.
 pub fn target() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from)
 }
@@ -92,7 +93,7 @@ pub fn output_of(program: &str, arguments: &[&str]) -> Option<String> {
     output.status.success().then_some(text)
 }
 
-/// Whether the program is on the path, for programs without `--version`.
+/// Whether the program is on the search path, for programs that do not know `--version`.
 pub fn is_on_path(program: &str) -> bool {
     let path = env::var_os("PATH").unwrap_or_default();
     env::split_paths(&path).any(|folder| folder.join(program).is_file())

@@ -1,4 +1,4 @@
-//! Command line.
+//! Command line of `cargo xtask`: its help text, and the parsing of its arguments.
 
 use crate::bevy::Bevy;
 use crate::package::Package;
@@ -58,7 +58,7 @@ exit status: 0 passed, 1 failed, 2 invalid command line, 3 this machine lacks so
 
 #[derive(Debug, PartialEq)]
 pub enum Task {
-    /// With arguments for the game.
+    /// Runs the game with these arguments.
     Play(IfMissing, Vec<String>),
     Test(IfMissing),
     Check(IfMissing),
@@ -69,10 +69,10 @@ pub enum Task {
     Release(ReleaseParts, IfMissing),
     Version(Version),
     Kernel(IfMissing),
-    /// With the duration and the levels.
+    /// Runs the soak test with these arguments: the duration and the levels.
     Soak(Vec<String>),
     Stand(IfMissing),
-    /// With the duration and the doors.
+    /// Runs the fuzzer with these arguments: the duration and the doors.
     Fuzz(Vec<String>),
     Scans,
     Package(Package),
@@ -175,7 +175,7 @@ fn parts(words: &[&str]) -> Result<Task, String> {
     }
 }
 
-/// Checks that a word is an address to which file names can be appended.
+/// Checks that a word is a web address to which file names can be appended.
 fn address_of_page(word: &str) -> Result<String, String> {
     let is_whole = word.starts_with("https://") || word.starts_with("http://");
     let is_plain = !word.contains(['"', '<', '>', '&', '#', '?']);
@@ -303,7 +303,7 @@ mod tests {
             "play --no-install -- a.png",
             play(IfMissing::Say, &["a.png"]),
         );
-        // Both the flag and the second separator belong to the game.
+        // After the first `--`, both the flag and a second `--` belong to the game.
         check(
             "play -- --no-install -- x",
             play(IfMissing::Install, &["--no-install", "--", "x"]),

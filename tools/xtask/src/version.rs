@@ -6,14 +6,14 @@ use std::fs;
 
 /// Manifest of the workspace, from which most crates inherit their version.
 const MAIN: &str = "Cargo.toml";
-/// Manifests outside of the workspace, each with its own version.
+/// Manifests of other workspaces, each with its own version.
 const OTHERS: [&str; 3] = [
     "tools/against_rapier/Cargo.toml",
     "plugins/bevy_fuwafuwa/Cargo.toml",
     "plugins/bevy_fuwafuwa/examples/Cargo.toml",
 ];
 const CHANGELOG: &str = "CHANGELOG.md";
-/// Sentence that the changelog contains until the first release.
+/// Sentence of the changelog that the first release removes.
 const NOT_YET: &str = " Nothing has been released yet.";
 const UNRELEASED: &str = "## [Unreleased]\n";
 
@@ -92,7 +92,7 @@ fn ask_for(version: &Version, old: &Version, manifest: &str) -> String {
     lines.collect()
 }
 
-/// Returns the changed files with their new contents, or a reason to change none.
+/// Returns the changed files with their new contents, or the reason why nothing can be changed.
 fn changed(
     version: &Version,
     date: &str,
@@ -162,7 +162,8 @@ fn changed(
 mod tests {
     use super::*;
 
-    /// Reads the current files and adds an unreleased change, because right after a release there is none.
+    /// Reads a file of the repository. Adds an unreleased change to the changelog, which has none right after
+    /// a release.
     fn read(path: &str) -> std::io::Result<String> {
         let text = fs::read_to_string(root().join(path))?;
         let news = format!("{UNRELEASED}\n### Added\n\n- Something.\n");
@@ -187,7 +188,7 @@ mod tests {
         assert!(version("0.10.0") > version("0.9.9"));
     }
 
-    /// Uses the current files, so that a changed format is noticed before a release.
+    /// Uses the files of the repository, so that a changed format is noticed before a release.
     #[test]
     fn changed_updates_all_files_with_the_version() {
         let next = version("1000.0.0");
@@ -203,7 +204,7 @@ mod tests {
         for (path, text) in &files {
             assert!(text.contains("1000.0.0"), "{path}");
         }
-        // A crate that requires an older version of a sibling crate cannot be built.
+        // Crates must require the new version of each other, because an older one cannot be built.
         for path in &manifests {
             let text = of(path).unwrap_or_else(|| read(path).unwrap());
             let beside = text.lines().filter(|line| line.contains("path = \"../"));

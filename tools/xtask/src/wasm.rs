@@ -1,8 +1,8 @@
-//! Golden scenes on wasm32 under Node: compares their bits with the native ones, and their durations.
+//! Golden scenes on wasm32 under Node. Their bits and durations are compared with those of the native build.
 //!
-//! rustup's toolchain builds for wasm32 after `rustup target add wasm32-unknown-unknown`. Otherwise Debian's
-//! packages are used: a compiler, a linker, and the sources of the standard library, which cargo then builds,
-//! too.
+//! rustup's toolchain builds for wasm32 after `rustup target add wasm32-unknown-unknown`. Without it,
+//! Debian's packages are used: a compiler, a linker, and the sources of the standard library, which cargo
+//! then builds.
 
 use crate::debian;
 use crate::folders;
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 pub const TARGET: &str = "wasm32-unknown-unknown";
-/// Enables 128-bit SIMD. All current browsers have it, and a module cannot choose at run time.
+/// Enables 128-bit SIMD. All current browsers have it; a module could not test for it at run time.
 const LANES: &str = "-Ctarget-feature=+simd128";
 
 /// Builds and runs the golden scenes; fails if the bits of a result differ.
@@ -30,15 +30,16 @@ pub fn run(if_missing: IfMissing) -> Result<(), Failure> {
     )
 }
 
-/// Returns the compiler if it and Node are installed. Otherwise the error begins with `undone`, the task that
-/// was not done.
+/// Returns the compiler for wasm32 if the compiler and Node are installed. Otherwise the error begins with
+/// `undone`, which names the task that needed them.
 pub fn compiler(if_missing: IfMissing, undone: &str) -> Result<Compiler, Failure> {
     let mut found = find_compiler();
     if if_missing == IfMissing::Install && found.is_err() {
-        // Package lists of fresh machines are old or missing. If the update fails, the old lists may still
-        // suffice.
+        // Updates the package lists, which are old or missing on fresh machines. If the update fails, the old
+        // lists may still suffice.
         apt_get(&["update", "--quiet"]);
-        // Twice, because the matching linker is known only once the compiler is installed.
+        // Searches and installs twice, because the matching linker is known only once the compiler is
+        // installed.
         for _ in 0..2 {
             match &found {
                 Err(lacks) if install(lacks) => found = find_compiler(),
@@ -54,11 +55,11 @@ pub fn compiler(if_missing: IfMissing, undone: &str) -> Result<Compiler, Failure
 pub enum Compiler {
     /// The toolchain in use, which has the standard library for wasm32.
     Ready,
-    /// Debian's toolchain, with this linker.
+    /// Debian's toolchain, with the linker at this path.
     Debian { linker: String },
 }
 
-/// Returns the compiler, or everything that is missing.
+/// Returns the compiler for wasm32, or all items that are missing.
 fn find_compiler() -> Result<Compiler, Vec<MissingItem>> {
     let mut lacks = Vec::new();
     if !answers("node") {
@@ -79,7 +80,7 @@ fn find_compiler() -> Result<Compiler, Vec<MissingItem>> {
     }
 }
 
-/// Returns Debian's compiler, recognized by its version output, or everything that is missing for it.
+/// Returns Debian's compiler, found from its version output, or all items that are missing for it.
 fn find_debian(
     description: Option<&str>,
     exists: impl Fn(&Path) -> bool,
@@ -99,9 +100,10 @@ fn find_debian(
     }
 }
 
-/// Installs the packages; returns whether that succeeded.
+/// Installs the missing items; returns whether that succeeded.
 fn install(lacks: &[MissingItem]) -> bool {
-    // The arguments forbid removal: rustc-web conflicts with Debian's rustc and rustup, which must stay.
+    // Installs with arguments that forbid removal. rustc-web conflicts with Debian's rustc and rustup, which
+    // must stay.
     let names = lacks.iter().map(|lack| lack.package.as_str());
     apt_get(&install_arguments(names))
 }
@@ -121,8 +123,8 @@ pub fn compile(compiler: &Compiler, words: &[&str]) -> Result<PathBuf, Failure> 
     if let Compiler::Debian { linker } = compiler {
         command
             .arg("-Zbuild-std=std,panic_abort")
-            // No features: the crates for backtraces are among the largest, and browsers show backtraces of
-            // their own.
+            // Builds the standard library without features. Browsers show backtraces of their own, and the
+            // crates for backtraces are among the largest.
             .arg("-Zbuild-std-features=")
             .envs(debian::ENVIRONMENT)
             .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
@@ -142,7 +144,7 @@ pub fn compile_checks(compiler: &Compiler) -> Result<PathBuf, Failure> {
 
 /// Native durations of the scenes on one thread \[ms\], in order.
 fn native_times() -> Result<Vec<String>, Failure> {
-    // Same packages and features as the tests in release mode, to reuse their build.
+    // Builds with the packages and features of the tests in release mode, to reuse their build.
     let mut build = cargo();
     build.args(["build", "--release", "--all-features"]);
     build.args(["--package", "fuwafuwa", "--package", "determinism_checks"]);

@@ -13,11 +13,11 @@ use std::process::Command;
 /// Task for the web version.
 #[derive(Debug, PartialEq)]
 pub enum Web {
-    /// Builds it. If an address is given, previews of the page refer to it.
+    /// Builds the web version. Previews of the page refer to the address, if one is given.
     Build(Option<String>),
-    /// Builds it and serves it on this machine.
+    /// Builds the web version and serves it on this machine.
     Serve,
-    /// Builds it and tests it in browsers.
+    /// Builds the web version and tests it in browsers.
     Test,
 }
 
@@ -38,7 +38,7 @@ pub fn run(web: Web, if_missing: IfMissing) -> Result<(), Failure> {
         Web::Serve => node("serve.mjs", &[&site], "the server failed"),
         Web::Test => {
             let checks = wasm::compile_checks(&compiler)?;
-            // Firefox renders in software only if there is a display.
+            // Starts a virtual display, because Firefox renders in software only if there is a display.
             let mut play = Command::new("xvfb-run");
             play.args(["--auto-servernum", "node", "tools/xtask/web/test/all.mjs"])
                 .args([&site, &checks]);

@@ -14,20 +14,20 @@ fn prefix() -> PathBuf {
     root().join(target()).join("wine")
 }
 
-/// Confines a program under Wine to its prefix.
+/// Confines a program under Wine to the separate prefix.
 pub fn shield(command: &mut Command) {
     command.env("WINEPREFIX", prefix()).env("WINEDEBUG", "-all");
     // Prevents Wine from installing .NET and a browser engine.
     command.env("WINEDLLOVERRIDES", "mscoree,mshtml=");
-    // Without UTF-8, Wine cannot read non-ASCII file names.
+    // Sets a UTF-8 locale if there is none, because without it Wine cannot read non-ASCII file names.
     let is_utf8 = |name| env::var(name).is_ok_and(|value: String| value.ends_with("UTF-8"));
     if !is_utf8("LC_ALL") {
         command.env("LC_ALL", "C.UTF-8");
     }
 }
 
-/// Prepares the prefix, and compiles the missing library with `compiler` if needed. The library is only used
-/// with Wine and not part of any package.
+/// Prepares the Wine prefix, and compiles the missing library with `compiler` if needed. The library is used
+/// only under Wine and is not part of any release package.
 pub fn prepare(compiler: &str) -> Result<(), Failure> {
     let mut boot = Command::new("wine");
     boot.args(["wineboot", "--init"]);
@@ -44,7 +44,7 @@ pub fn prepare(compiler: &str) -> Result<(), Failure> {
             system.display()
         )));
     }
-    // Compiles to a temporary name, so that an interruption leaves no incomplete library.
+    // Compiles the library to a temporary name, so that an interruption leaves no incomplete library.
     let part = system.join("bcryptprimitives.part");
     let mut compile = Command::new(compiler);
     compile.args(["-O2", "-shared", "-o"]).arg(&part);

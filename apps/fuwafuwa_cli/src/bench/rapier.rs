@@ -1,6 +1,5 @@
-//! Comparison with Rapier. Rapier takes minutes to build and only this command needs it. Therefore the
-//! comparison is a separate program, which cargo builds on first use. It runs both engines and prints the
-//! results.
+//! Comparison with Rapier in a separate program, which cargo builds on first use. It is separate because
+//! Rapier takes minutes to build and only this command needs it.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
@@ -13,7 +12,7 @@ const HERE: &str = match option_env!("FUWAFUWA_SOURCES") {
     None => env!("CARGO_MANIFEST_DIR"),
 };
 
-/// Builds the program and runs it with the arguments.
+/// Builds the comparison program and runs it with the arguments.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let manifest = manifest();
     if !manifest.exists() {
@@ -36,7 +35,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     })
 }
 
-/// Returns the manifest of the program, in the folder beside this crate.
+/// Returns the Cargo manifest of the comparison program, `tools/against_rapier`.
 fn manifest() -> PathBuf {
     Path::new(HERE).join("../../tools/against_rapier/Cargo.toml")
 }

@@ -18,12 +18,12 @@ use fuwafuwa::{Dim, Dim2, Dim3, Grading, VoxelGrid};
 
 /// Thickness of a beam [voxels].
 const THICKNESS: usize = 16;
-/// Lengths of the beams [thicknesses].
+/// Lengths of the beams, as multiples of their thickness.
 const LENGTHS: [usize; 3] = [4, 6, 8];
-/// Maximum deviation of the ratio of deflections, graded mesh to theory, from 1.
+/// Maximum relative deviation of a graded beam's tip deflection from theory.
 const TOLERANCE: f64 = 0.02;
 
-/// Cantilever.
+/// Cantilever: a beam fixed at one end.
 #[derive(Copy, Clone, Debug)]
 struct Beam {
     dim: usize,
@@ -81,7 +81,7 @@ impl Beam {
         let load = self.load(&mesh);
         let guess = self.guess(&mesh, elasticity);
         let moved = statics.solve(&load, guess, progress)?;
-        // The load sums to 1, so its work equals the deflection.
+        // Tip deflection as the work of the load, because the nodal forces sum to 1.
         let deflection: f64 = moved.iter().zip(&load).map(|(u, f)| u * f).sum();
         Ok(deflection / self.timoshenko(D::N, self.length as f64, elasticity))
     }
@@ -96,7 +96,8 @@ impl Beam {
         x * x * (3.0 * length - x) / (6.0 * modulus * inertia) + x / shear
     }
 
-    /// Returns a unit load on the end face as forces on the nodes, each by its share of the face.
+    /// Returns the nodal forces of a unit load on the end face of the beam, in proportion to each node's
+    /// area.
     fn load<D: Dim>(self, mesh: &Mesh<D>) -> Vec<f64> {
         let mut load = vec![0.0; mesh.node_capacity() * D::N];
         for (_, element) in mesh.elements() {
@@ -113,7 +114,7 @@ impl Beam {
         load.iter().map(|share| share / total).collect()
     }
 
-    /// Returns the displacements expected from theory. As an initial guess they save most iterations of the
+    /// Returns the nodal displacements of beam theory. As an initial guess they save most iterations of the
     /// solver.
     fn guess<D: Dim>(self, mesh: &Mesh<D>, elasticity: Elasticity) -> Vec<f64> {
         let mut moved = vec![0.0; mesh.node_capacity() * D::N];

@@ -9,8 +9,8 @@ use fuwafuwa::{
     World, WorldConfig,
 };
 
-/// Number of dimensions, voxels across, and speed of each hand [m/s]. At the highest speed, the sides of the
-/// hole approach each other by ten ring diameters per second.
+/// Number of dimensions, voxels across the ring, and speed of each hand [m/s]. At the highest speed, opposite
+/// sides of the hole approach each other by ten ring diameters per second.
 const CASES: [(usize, usize, f32); 12] = [
     (2, 24, 0.25),
     (2, 24, 2.0),
@@ -27,17 +27,17 @@ const CASES: [(usize, usize, f32); 12] = [
 ];
 /// Radius of the hands [m].
 const HAND: f32 = 0.4;
-/// Final distance between the surfaces of the hands [m]. Both sides of the ring together are 0.5 m thick, so
-/// the hole is shut before the hands get that close.
+/// Final distance between the surfaces of the hands [m]. The two sides of the ring are together 0.5 m thick,
+/// so the hands compress the ring after its hole is shut.
 const LEFT: f32 = 0.4;
-/// Waiting time at the final distance [s].
+/// Time for which the hands wait at their final distance [s].
 const WAIT: f32 = 2.0;
 /// Half width of the strip in the middle of the ring in which the penetration is measured [m].
 const MIDDLE: f32 = 0.1;
 /// Maximum penetration of one side of the hole into the other [voxels].
 const DEPTH: f64 = 0.5;
-/// Maximum gap between the sides at their closest approach [voxels]. A larger gap means that the hole was not
-/// squeezed shut.
+/// Maximum gap between opposite sides of the hole at their closest approach [voxels]. A larger gap means that
+/// the hole was not squeezed shut.
 const SHUT: f64 = 2.0;
 
 /// Squeezes rings of several sizes, slowly and fast.
@@ -100,7 +100,7 @@ fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
     Ok(f64::from(deepest / voxel))
 }
 
-/// Returns the z coordinate of the middle of a ring [m].
+/// Returns the z coordinate of the ring's mid-plane [m].
 fn plane_of<D: Dim>(grid: &VoxelGrid<D>) -> f32 {
     match D::N {
         2 => 0.0,
@@ -122,7 +122,7 @@ fn hole_side<D: Dim>(body: &SoftBody<D>, side: f32) -> Vec<NodeId> {
     nodes.map(|(id, _)| id).collect()
 }
 
-/// Returns the positions of nodes, from left to right.
+/// Returns the positions of nodes, sorted from left to right.
 fn places<D: Dim>(body: &SoftBody<D>, nodes: &[NodeId]) -> Vec<Vec3> {
     let positions = nodes.iter().map(|&id| body.node_state(id).0);
     let mut places: Vec<Vec3> = positions.map(DimVector::to_vec3).collect();

@@ -6,8 +6,8 @@
 //!
 //! F is the deformation gradient, R its rotation, d the number of dimensions (a plane body counts as 3D) and
 //! V the volume. μ and λ are Lamé's parameters. h_i is the deviation of node i from the affine motion, with
-//! weight w_i and hourglass stiffness k. The extra resistance of an element that is squashed flat is left
-//! out, because the bodies of the checks are never deformed that far.
+//! weight w_i and hourglass stiffness k. The formula omits the extra resistance of an element that is
+//! squashed flat, because no check deforms a body that far.
 
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::inspect::{Elasticity, ElementClass, Matrix};
@@ -92,7 +92,8 @@ mod tests {
     use fuwafuwa::inspect::{cell_corners, closure, forces};
     use fuwafuwa::{Dim2, Dim3, Law};
 
-    /// Checks that the force is the negative gradient of the energy, also for elements with mid nodes.
+    /// Checks that the elastic force is the negative gradient of the elastic energy. `slots` selects the mid
+    /// nodes of the element.
     fn check_slope<D: Dim>(children: u8, slots: u32) {
         let elasticity = Elasticity::new(1000.0, 0.3).unwrap();
         let stencil = ElementClass::<D>::new(children, slots).unwrap();

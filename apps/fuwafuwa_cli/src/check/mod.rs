@@ -1,4 +1,4 @@
-//! Checks of the mechanics against references. The exit code is 1 if a check fails.
+//! Checks of the mechanics against theory and reference solutions. The exit status is 1 if a check fails.
 
 mod beam;
 mod doughnut;

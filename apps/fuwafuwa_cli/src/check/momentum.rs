@@ -7,13 +7,13 @@ use crate::report::{Outcome, Progress};
 use anyhow::{Result, anyhow};
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Grading, Point, Vec3};
 
-/// Number of dimensions and voxels across for each body.
+/// Bodies in which nodes are released: number of dimensions and voxels across.
 const BODIES: [(usize, usize); 3] = [(2, 32), (3, 12), (3, 16)];
 /// Number of releases, each at a random point along a random axis.
 const RELEASES: usize = 1000;
-/// Number of releases between two simulated substeps.
+/// Number of releases after which one substep is simulated.
 const BETWEEN_STEPS: usize = 10;
-/// Maximum change of mass or momentum, relative to the initial value.
+/// Maximum change of mass, linear or angular momentum, relative to the initial value.
 const TOLERANCE: f64 = 1e-4;
 
 /// Measures the drift of mass, linear and angular momentum over random releases.
@@ -35,7 +35,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// Returns the relative changes of mass, linear and angular momentum.
+/// Returns the relative changes of mass, linear and angular momentum caused by `releases` random releases.
 fn drifts<D: Dim>(n: usize, releases: usize) -> Result<[f64; 3]> {
     let mut body = ball::<D>(n, material(), Grading::Graded)?;
     arrange(&mut body, |rest| {

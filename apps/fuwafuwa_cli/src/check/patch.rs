@@ -9,7 +9,7 @@ use fuwafuwa::inspect::{
 };
 use fuwafuwa::{Dim, Dim2, Dim3, Grading, Law, NodeId, Point, VoxelGrid};
 
-/// Maximum residual force of the default law, relative to stress × face area of a voxel.
+/// Maximum residual force of the default law on an inner node, relative to stress × face area of a voxel.
 const LIMIT: f64 = 1e-5;
 
 /// Number of random shapes in 2D and in 3D.
@@ -19,14 +19,14 @@ struct Shapes {
     space: u64,
 }
 
-/// Numbers for `fuwafuwa check`. The unit test uses fewer.
+/// Number of shapes in `fuwafuwa check`. The unit test uses fewer.
 const FULL: Shapes = Shapes {
     plane: 1000,
     space: 400,
 };
 
-/// Compares the residual force of the default law with the limit, over random cut shapes. The residual of the
-/// paper's law is shown for comparison.
+/// Checks that the residual force of the default law stays below [`LIMIT`] on random shapes with cuts. Shows
+/// the residual force of the paper's law for comparison.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     check_shapes(FULL, progress)
 }
@@ -104,7 +104,7 @@ fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Connectivity<D>, law: Law) -> Resu
     for (id, node) in mesh.nodes() {
         if node.group == D::ALL_CORNERS && !sharing.is_open(node.at) {
             for force in sums[id.index()].to_array() {
-                // f64::max would ignore a NaN.
+                // Replaces NaN by infinity, because f64::max would ignore it.
                 let force = if force.is_nan() { f64::INFINITY } else { force };
                 worst = worst.max(force.abs() / stress);
             }

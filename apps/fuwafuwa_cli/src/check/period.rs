@@ -1,5 +1,5 @@
-//! Period and energy: a squashed ball oscillates freely. The period of graded bodies must equal that of
-//! uniform ones, and the energy must be kept.
+//! Period and energy: a squashed ball oscillates freely. The period of a graded body must equal that of a
+//! uniform body, and the energy must stay constant.
 
 use super::motion::{arrange, at_rest, ball, material};
 use super::{energy, parallel};
@@ -10,17 +10,18 @@ use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Grading, NodeId, SoftBody, Vec3};
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
-/// Number of dimensions and voxels across for each body.
+/// Bodies that oscillate: number of dimensions and voxels across.
 const BODIES: [(usize, usize); 5] = [(2, 16), (2, 64), (3, 16), (2, 128), (3, 32)];
-/// Maximum relative deviation of the period from that of the uniform body.
+/// Maximum relative difference between the periods of a graded and a uniform body.
 const TOLERANCE: f64 = 0.03;
-/// Allowed range of the final energy relative to the initial one.
+/// Allowed range of the energy at the end, relative to the initial energy.
 const KEPT: RangeInclusive<f64> = 0.95..=1.02;
-/// Initial squash, as a fraction of the height.
+/// Initial squash of the body: relative reduction of its height.
 const SQUASH: f32 = 0.08;
 /// Simulated time [s].
 const DURATION: f64 = 5.0;
-/// Final time span over which the energy is averaged [s], because it fluctuates between substeps.
+/// Time span at the end of the simulation in which the energy is averaged [s]. The average removes
+/// fluctuations between substeps.
 const LAST: f64 = 0.5;
 
 /// Compares periods of graded and uniform bodies, and checks the energy of both.
@@ -104,9 +105,8 @@ fn ring<D: Dim>(n: usize, grading: Grading, progress: &Progress) -> Result<Ring>
     })
 }
 
-/// Takes a step of `duration` [s] and returns the energy [J] before it. Velocities are known half a step
-/// before and half a step after the positions. Their mean approximates the velocity at the time of the
-/// positions.
+/// Takes a step of `duration` [s] and returns the energy [J] before the step. Velocities are known half a
+/// step before and half a step after the positions. Their mean is the velocity for the kinetic energy.
 fn advance_and_weigh<D: Dim>(body: &mut SoftBody<D>, duration: f64) -> f64 {
     let stored = energy::of_body(body);
     let velocity = |body: &SoftBody<D>, id: NodeId| body.node_state(id).1.to_vec3().as_dvec3();
@@ -120,9 +120,10 @@ fn advance_and_weigh<D: Dim>(body: &mut SoftBody<D>, duration: f64) -> f64 {
     stored + moving.sum::<f64>()
 }
 
-/// Returns the period within 10 % of `about` [s] that is strongest in a signal sampled every `duration` [s].
+/// Returns the strongest period in a signal sampled every `duration` [s]. Only periods within 10 % of `about`
+/// [s] are tried.
 ///
-/// The Hann window, which is 0 at both ends, keeps other modes of the body out of the result [Harris 1978].
+/// The signal is weighted with the Hann window, which suppresses other modes of the body [Harris 1978].
 fn strongest_period(signal: &[f64], duration: f64, about: f64) -> f64 {
     let count = signal.len() as f64;
     let strength = |period: f64| {

@@ -1,13 +1,13 @@
 //! Sag: under its weight, the top of a graded disc, ball or box must sink as far as that of a uniform body.
 //!
-//! The lowest layer of nodes is fixed. A graded disc or ball is compared with a uniform one of the same
-//! voxels, so that only the placing of elements differs: their voxel shape, and with it the area they stand
-//! on, depends on the resolution. A box stands on the same area at any resolution, so all graded boxes are
-//! compared with one nearly converged uniform box. The weight is small, so the law is linearised at rest. The
-//! reported sag is for a game's material and a gravity of 1 m/s².
+//! The lowest layer of nodes is fixed. Graded discs and balls are compared with uniform ones of the same
+//! voxels, because their shape and the area that they stand on depend on the resolution. Boxes stand on the
+//! same area at any resolution. All graded boxes are therefore compared with one nearly converged uniform
+//! box. The weight is small, so the law is linearised at rest. The reported sag is for a game's material and
+//! a gravity of 1 m/s².
 //!
-//! The uniform body has by far the most elements, but it is symmetric. Half of the disc or a quarter of the
-//! ball sags like the whole if the nodes in the symmetry planes are fixed perpendicular to the planes.
+//! A uniform body has by far the most elements. Symmetry reduces them: only half of the disc or a quarter of
+//! the ball is simulated, and nodes in a symmetry plane are fixed perpendicular to the plane.
 
 use super::motion::material;
 use super::parallel;
@@ -21,9 +21,10 @@ use fuwafuwa::{Dim, Dim2, Dim3, Grading, VoxelGrid};
 const DISCS: [usize; 5] = [16, 32, 64, 128, 256];
 /// Voxels across the balls.
 const BALLS: [usize; 4] = [8, 16, 32, 64];
-/// Maximum relative deviation of the sag of discs and balls from that of the uniform body.
+/// Maximum relative difference between the sag of a graded disc or ball and the sag of the uniform one.
 const TOLERANCE: f64 = 0.02;
-/// Number of dimensions, voxels across, and maximum relative deviation of the sag, for each box.
+/// Graded boxes: number of dimensions, voxels across, and maximum relative difference from the sag of the
+/// reference box.
 const BOXES: [(usize, usize, f64); 7] = [
     (2, 16, 0.05),
     (2, 32, TOLERANCE),
@@ -33,9 +34,9 @@ const BOXES: [(usize, usize, f64); 7] = [
     (3, 32, TOLERANCE),
     (3, 64, TOLERANCE),
 ];
-/// Number of dimensions and voxels across of each uniform reference box. The convergence check compares it
-/// with a box of half the resolution; their sags may differ by the fraction `CONVERGED`.
+/// Uniform reference boxes: number of dimensions and voxels across.
 const REFERENCES: [(usize, usize); 2] = [(2, 256), (3, 64)];
+/// Maximum relative difference between the sag of a reference box and that of a box with half its resolution.
 const CONVERGED: f64 = 0.01;
 
 /// Compares the sag of graded bodies with that of uniform ones.
@@ -81,7 +82,7 @@ fn check_round(progress: &Progress) -> Result<Vec<Outcome>> {
         .iter()
         .flat_map(|&body| gradings.map(|grading| (body, grading)))
         .collect();
-    // The slowest cases come last.
+    // Sorts the slowest cases to the end, because [`parallel::each`] starts with the last case.
     cases.sort_by_key(|&((dim, n), _)| n.pow(dim as u32) * n);
     let found = parallel::each(&cases, progress, |&((dim, n), grading)| match dim {
         2 => sag(&VoxelGrid::<Dim2>::ball(n, 1.0)?, grading, progress),
@@ -107,8 +108,8 @@ fn check_round(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(bodies.iter().map(outcome).collect())
 }
 
-/// Returns how far the top sinks [m]. A uniform body must have an even number of voxels across, because it is
-/// halved at its middle.
+/// Returns how far the top of a body sinks [m]. A uniform body must have an even number of voxels across,
+/// because only one half of it is simulated.
 fn sag<D: Dim>(whole: &VoxelGrid<D>, grading: Grading, progress: &Progress) -> Result<f64> {
     match grading {
         Grading::Uniform => sag_between(whole, grading, whole.size()[0] / 2, progress),
@@ -116,8 +117,9 @@ fn sag<D: Dim>(whole: &VoxelGrid<D>, grading: Grading, progress: &Progress) -> R
     }
 }
 
-/// Like [`sag`], for the part of the body whose horizontal voxel coordinates are at least `mirror`. Nodes at
-/// the coordinate `mirror` stay in that symmetry plane. 0 stands for the whole body, without symmetry planes.
+/// Returns how far the top sinks [m] if only voxels with horizontal coordinates of at least `mirror` are
+/// simulated. Nodes at the coordinate `mirror` stay in that symmetry plane. With 0, the whole body is
+/// simulated.
 fn sag_between<D: Dim>(
     whole: &VoxelGrid<D>,
     grading: Grading,
@@ -156,13 +158,14 @@ fn sag_between<D: Dim>(
     let moved = statics.solve(&load, still, progress)?;
     let (mut sunk, mut count) = (0.0, 0.0);
     for (id, node) in mesh.nodes().filter(|(_, node)| node.at[1] == highest) {
-        // The weight is the number of adjacent voxels, so that nodes in a symmetry plane count half.
+        // Weight of a top node in the mean: its number of adjacent voxels. A node in a symmetry plane has
+        // half as many.
         let weight = f64::from(node.group.count_ones());
         sunk -= weight * moved[id.index() * D::N + 1];
         count += weight;
     }
-    // The solution is for voxels 1 m wide. In D dimensions the load scales with width^D and the stiffness
-    // with width^(D−2), so the sag scales with width².
+    // Scales the solution, which is for voxels 1 m wide. In D dimensions the load grows with width^D and the
+    // stiffness with width^(D−2), so the sag grows with width².
     let voxel = f64::from(grid.voxel_size());
     Ok(sunk / count * voxel * voxel)
 }

@@ -10,18 +10,19 @@ use fuwafuwa::{
     SoftBodyHandle, Vec2, Vec3, World, WorldConfig,
 };
 
-/// Number of dimensions, voxels across, and damping, for each body.
+/// Bodies that spin uncut: number of dimensions, voxels across, and damping of the material.
 const BODIES: [(usize, usize, f32); 4] = [(2, 32, 0.0), (2, 32, 0.08), (3, 24, 0.0), (3, 24, 0.08)];
-/// Minimum fraction of the angular momentum that is kept.
+/// Minimum angular momentum at the end, as a fraction of the initial one.
 const KEPT: f64 = 0.999;
 /// Simulated time [s].
 const DURATION: f32 = 5.0;
-/// Number of dimensions and voxels across of the bodies that are cut in two while they spin. [`APART`] is the
-/// time after the cut when the halves are separate and the measurement begins [s].
+/// Bodies that are cut in two while they spin: number of dimensions and voxels across.
 const TORN: [(usize, usize); 2] = [(2, 32), (3, 16)];
+/// Time after the cut at which the halves are separate and their measurement begins [s].
 const APART: f32 = 1.0;
 
-/// Measures how much angular momentum along its initial direction is kept by bodies that start at 5 rad/s.
+/// Measures the fraction of angular momentum, along its initial direction, that bodies keep. They start at 5
+/// rad/s.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let found = parallel::each(&BODIES, progress, |&(dim, n, damping)| match dim {
         2 => kept::<Dim2>(n, damping),
@@ -47,7 +48,8 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// Fractions of angular momentum and momentum that the halves of a cut body keep; the worse half counts.
+/// Fractions of momentum and angular momentum that the halves of a cut body keep. Each value is that of the
+/// half that keeps less.
 struct Halves {
     spin: f64,
     momentum: f64,
@@ -64,7 +66,7 @@ fn middle_plane() -> Blade<Dim3> {
     Blade::parallelogram(Vec3::new(0.0, -1.5, -1.5), 3.0 * Vec3::Y, 3.0 * Vec3::Z)
 }
 
-/// Cuts a spinning body in two along a blade. The halves then fly apart, each spinning like the whole.
+/// Cuts a spinning body in two along a blade, and measures what the separating halves keep.
 fn halves<D: Dim>(n: usize, blade: &Blade<D>) -> Result<Halves> {
     let (mut world, id) = spinning::<D>(n, material())?;
     let whole = world[id].momentum().angular;
@@ -139,7 +141,7 @@ fn kept<D: Dim>(n: usize, damping: f32) -> Result<f64> {
 /// Returns a world with one freely spinning body.
 fn spinning<D: Dim>(n: usize, material: Material) -> Result<(World<D>, SoftBodyHandle)> {
     let mut body = ball::<D>(n, material, Grading::Graded)?;
-    // 5 rad/s about (0, 4, 3) / 5; in 2D about z.
+    // Initial angular velocity: 5 rad/s about (0, 4, 3) / 5; in 2D about z.
     let spin = match D::N {
         2 => Vec3::new(0.0, 0.0, 5.0),
         _ => Vec3::new(0.0, 4.0, 3.0),

@@ -10,19 +10,22 @@ use fuwafuwa::{
     WorldConfig,
 };
 
-/// Number of bodies in a stack, voxels across each, and width of a body [m].
+/// Number of bodies in a stack.
 const BODIES: usize = 10;
+/// Voxels across a body.
 const VOXELS: usize = 4;
+/// Width of a body [m].
 const WIDTH: f32 = 0.1;
-/// Young's modulus [Pa], high enough that the stack does not buckle under its own weight. A column of this
-/// height needs ρ g A h³ / (7.84 I) [Greenhill 1881], which is 1.5e5 Pa here.
+/// Young's modulus of the bodies [Pa]. A column of this height buckles under its own weight below ρ g A h³ /
+/// (7.84 I) [Greenhill 1881], which is 1.5e5 Pa here.
 const YOUNG: f64 = 2.4e5;
-/// Simulated time, and time after which the stack must stand still [s].
+/// Simulated time [s].
 const DURATION: f32 = 60.0;
+/// Time after which the stack must stand still [s].
 const SETTLED: f32 = 5.0;
-/// Maximum sideways distance from the initial position, and maximum motion after settling; in widths of a
-/// body.
+/// Maximum sideways distance of a body from its initial position [widths of a body].
 const LEANING: f64 = 0.05;
+/// Maximum motion of a body after [`SETTLED`] [widths of a body].
 const MOTION: f64 = 0.01;
 
 /// Measurements of a stack, in widths of a body.

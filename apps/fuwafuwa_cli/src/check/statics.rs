@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 const CONVERGED: f64 = 1e-8;
 /// Maximum number of iterations of conjugate gradients.
 const MOST_ROUNDS: usize = 20_000;
-/// Step of the central differences to each side, in half widths of an element.
+/// Step of a node to each side in the central differences, in half widths of an element.
 const STEP: f64 = 1e-6;
 
 /// Body linearised at rest, with some fixed nodes. Lengths are in voxels.
@@ -25,12 +25,12 @@ pub struct Statics {
     diagonal: Vec<f64>,
 }
 
-/// Element as a part of the global stiffness operator.
+/// One element of the global stiffness operator.
 struct OperatorElement {
     class: u32,
-    /// Stiffness relative to that of its class.
+    /// Factor between the stiffness of the element and that of its class.
     scale: f64,
-    /// Indices of its nodes' coordinates in the global vectors.
+    /// Indices of the coordinates of the element's nodes in the global vectors.
     places: Vec<u32>,
 }
 
@@ -139,8 +139,8 @@ impl Statics {
             let matrix = &self.classes[&part.class];
             local.clear();
             local.resize(part.places.len(), 0.0);
-            // Takes each row for a column, which is valid because the matrix is symmetric. The sums of the
-            // inner loop are then independent of each other and can be vectorised.
+            // Reads each matrix row as a column, which is valid because the matrix is symmetric. The sums of
+            // the inner loop are then independent of each other and can be vectorised.
             for (column, &place) in matrix.chunks_exact(local.len()).zip(&part.places) {
                 let along = part.scale * moved[place as usize];
                 for (sum, entry) in local.iter_mut().zip(column) {

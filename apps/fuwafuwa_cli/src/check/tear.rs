@@ -8,7 +8,7 @@ use fuwafuwa::{
     WorldConfig,
 };
 
-/// Number of dimensions, voxels across, and whether it has a notch, for each bar.
+/// Bars: number of dimensions, voxels across, and whether the bar has a notch.
 const BARS: [(usize, usize, bool); 10] = [
     (2, 32, false),
     (2, 64, false),
@@ -21,19 +21,19 @@ const BARS: [(usize, usize, bool); 10] = [
     (3, 16, true),
     (3, 32, true),
 ];
-/// Maximum relative deviation of a load from its reference.
+/// Maximum relative deviation of a breaking load from its reference.
 const TOLERANCE: f64 = 0.03;
-/// Pulling speed of unnotched and notched bars [m/s], low enough that inertia and damping hardly contribute
-/// to the load.
+/// Pulling speed of unnotched and of notched bars [m/s]. Both are so low that inertia and damping hardly
+/// contribute to the load.
 const SPEEDS: [f32; 2] = [0.03, 0.01];
-/// Initial strain relative to strength / Young's modulus, for unnotched and notched bars. An unnotched bar is
-/// in equilibrium at this strain. Around a notch the strain concentrates only after the start, and
-/// overshoots. A notched bar therefore starts below half of its breaking load.
+/// Initial strain of unnotched and of notched bars, relative to strength / Young's modulus. An unnotched bar
+/// starts in equilibrium. A notched bar starts with uniform strain, which then concentrates at the notch and
+/// overshoots. Its initial strain is low so that the overshoot does not break it.
 const STARTS: [f32; 2] = [0.85, 0.08];
-/// Position of the notch along the bar [m], slightly beside a boundary between voxels.
+/// Position of the notch along the bar [m], slightly beside the boundary between voxels at 1 m.
 const NOTCH: f32 = 1.001;
 
-/// Compares loads of unnotched bars with strength × area, and loads of notched bars with each other.
+/// Compares breaking loads. Unnotched bars must break at strength × area, notched bars at equal loads.
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let loads = parallel::each(&BARS, progress, |&(dim, n, notched)| match dim {
         2 => load(n, notched.then(notch_line).as_ref()),
@@ -43,8 +43,8 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     for (&(dim, n, notched), &load) in BARS.iter().zip(&loads) {
         let what = if notched { "notched" } else { "whole" };
         let case = format!("tear {dim}D, n = {n}, {what}, load / reference");
-        // The load at which an ideal unnotched bar 1 m wide breaks. For notched bars, the mean over all
-        // resolutions.
+        // Reference load [N]. Unnotched bars: load at which an ideal bar 1 m wide breaks. Notched bars: mean
+        // load over all resolutions.
         let reference = if notched {
             let sisters = BARS
                 .iter()
@@ -84,7 +84,7 @@ fn load<D: Dim>(n: usize, notch: Option<&Blade<D>>) -> Result<f64> {
         ..Material::default()
     };
     if notch.is_none() {
-        // Fixed ends cannot contract sideways. Poisson's ratio 0 keeps the strain uniform all the same.
+        // Poisson's ratio 0 keeps the strain uniform, although the fixed ends cannot contract sideways.
         material.elasticity.poisson = 0.0;
     }
     let mut body = SoftBody::new(grid, &[material])?;

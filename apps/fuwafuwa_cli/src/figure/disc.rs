@@ -1,4 +1,4 @@
-//! Structure of a body at rest: a graded disc, its look-up table, and a ball cut open.
+//! Figures of a body at rest: a graded disc, its look-up table from cells to elements, and a ball cut open.
 
 use super::legend::level_entries;
 use anyhow::Result;
@@ -157,15 +157,15 @@ fn draw_level(
     for view in body.element_views().filter(|view| view.level == level) {
         worlds::plane_element(painter, frame, &view, 1.3);
     }
-    // The outline of the body makes the panels comparable.
+    // Draws the outline of the body, so that the panels of the levels can be compared.
     for line in body.outlines() {
         let spots = line.points.iter().map(|&at| frame.spot(at)).collect();
         painter.ring(spots, 1.4, Role::Ink);
     }
 }
 
-/// Returns the nodes in the middle of a straight side of an element. Only the finer neighbours have them as
-/// corners.
+/// Returns the hanging nodes: nodes in the middle of a side of an element. Only the finer elements beside it
+/// have them as corners.
 fn hanging_nodes(mesh: &Mesh<Dim2>) -> BTreeSet<NodeId> {
     let mut hanging = BTreeSet::new();
     for (_, element) in mesh.elements() {

@@ -118,7 +118,7 @@ pub fn phases() -> Result<Painter> {
     Ok(painter)
 }
 
-/// Returns the lattice points and positions of the slots that the children of an element touch, with or
+/// Returns the lattice points and positions of the slots of an element's children. A slot is included with or
 /// without a node.
 fn slots_of(element: &Element, view: &ElementView) -> Vec<(Point, Vec3)> {
     let (low, half) = (element.cell.first_voxel(), element.cell.width() / 2);

@@ -152,7 +152,7 @@ fn write_time(painter: &mut Painter, tick: usize) {
     painter.text([16.0, 16.0], 14.0, Role::Ink, &seconds);
 }
 
-/// Selects the frames at the given positions, 0 (first) to 1 (last).
+/// Selects frames by their positions `at` in the film, 0 (first) to 1 (last).
 fn moments(frames: &[Pixmap], at: &[f32]) -> Vec<Pixmap> {
     let last = (frames.len() - 1) as f32;
     at.iter()

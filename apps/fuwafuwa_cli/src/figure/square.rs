@@ -14,16 +14,17 @@ use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, PaperTransform, Role};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Voxels across the square and its empty rim. The rim centres it in the grid like the disc of figure 1.
+/// Voxels across the square and its empty rim together. The rim centres the square in the grid, as in figure
+/// 1.
 pub const ACROSS: i32 = 16;
 /// Position of the crack along x [voxels].
 pub const MIDDLE: i32 = 8;
 /// Bit mask of the voxels to the right of a lattice point.
 const RIGHT: u8 = 0b1010;
-/// Opening of the crack at its mouth, to each side, relative to the length of the crack.
+/// Displacement of each side of the crack at its mouth, relative to the length of the crack.
 const GAPE: f32 = 0.16;
 
-/// The square before and after the release of one node.
+/// The square of figures 3 to 5, before and after the release of one node.
 pub struct Release {
     /// Body before the release.
     pub before: SoftBody<Dim2>,
@@ -34,7 +35,8 @@ pub struct Release {
 }
 
 impl Release {
-    /// Creates the square with all nodes below a height released, then releases the node at that height.
+    /// Creates the square with all nodes of the crack below `height` released, then releases the node at
+    /// `height`.
     pub fn at(height: i32) -> Result<Self> {
         let solid = 1..ACROSS - 1;
         let size = [ACROSS as usize, ACROSS as usize, 1];
@@ -63,7 +65,7 @@ impl Release {
         Ok(body)
     }
 
-    /// Returns the cells whose element changes or disappears in the release.
+    /// Returns the cells with elements that change or disappear in the release.
     pub fn parents(&self) -> BTreeSet<Cell> {
         let after = filled(&self.after);
         let changed =
@@ -139,7 +141,7 @@ pub fn position_of(at: Point) -> Vec2 {
     Vec2::new(at[0] as f32, at[1] as f32)
 }
 
-/// Opens the crack below a height like a wedge, so that it becomes visible.
+/// Opens the crack below `height` like a wedge, so that the crack becomes visible.
 fn open_crack(body: &mut SoftBody<Dim2>, height: i32) -> Result<()> {
     let nodes: Vec<_> = body.mesh().nodes().collect();
     for (id, node) in nodes {

@@ -13,19 +13,19 @@ use egui::{RichText, Slider, Ui, vec2};
 pub enum BarAction {
     /// Take up a tool.
     Take(Tool),
-    /// Pause or resume.
+    /// Pause or resume the procedure.
     Rest,
-    /// Restart with the untouched organ.
+    /// Restart the procedure with the uncut organ.
     Again,
     /// Replay the procedure from the start.
     Watch,
     /// Continue by hand from the current point of a replay.
     TakeOver,
-    /// Save files.
+    /// Save recording, table and plots.
     Save,
 }
 
-/// Height of buttons [points].
+/// Height of the buttons in the bar [points].
 const HIGH: f32 = 48.0;
 
 /// Shows the bar and returns the chosen action.

@@ -12,12 +12,12 @@ use fuwafuwa::DEFAULT_TICK;
 const SPAN: f32 = 20.0;
 const BLUE: Color32 = Color32::from_rgb(47, 111, 159);
 
-/// Plot of a quantity: name, unit and value.
+/// Plot of a measured quantity over time.
 struct Curve {
     name: &'static str,
     unit: &'static str,
     colour: Color32,
-    /// Smallest value at the top of the axis. The axis grows to show larger values.
+    /// Minimum upper end of the vertical axis. The axis extends beyond it to show larger values.
     least: f32,
     value: fn(&Sample) -> f32,
 }
@@ -39,7 +39,7 @@ const CURVES: [Curve; 2] = [
     },
 ];
 
-/// Draws the plots side by side, and further measurements as text at their right.
+/// Draws the plots side by side, and the measurements without a plot as text at their right.
 pub fn show(ui: &mut Ui, session: &Session, theme: &Theme) {
     let rect = ui.available_rect_before_wrap();
     let wide = 0.36 * rect.width();

@@ -8,17 +8,17 @@ use force_feedback::{Ability, Settings, State, Stop};
 use fuwafuwa::Vec3;
 use sticks::{Change, Control, Device, DeviceId, Direction, PadButton, Snapshot, radial_dead_zone};
 
-/// Deflection of a stick below which it counts as centred, and above which it counts as full; fractions of
-/// its range.
+/// Deflection of a stick below which it counts as centred, as a fraction of its range.
 const DEAD: f32 = 0.15;
+/// Deflection of a stick above which it counts as full, as a fraction of its range.
 const RIM: f32 = 0.95;
-/// Contact force at which a device gives its full force [N]. A knife in soft tissue meets one to a few
-/// newtons.
+/// Contact force at which a device gives its full force [N]. Cutting soft tissue needs one to a few newtons.
 const FULL: f32 = 5.0;
-/// Time without input after which a device gets no rumble [s]. Devices with real force feedback are exempt.
+/// Time without input after which a device gets no rumble [s]. Devices with force feedback keep their forces.
 const RESTED: f32 = 1.5;
-/// Feedback strength per split node, and the maximum for a tick; 1 is the strongest feedback.
+/// Strength of the rumble per split node; 1 is the strongest rumble.
 const TEAR: f32 = 0.04;
+/// Maximum strength of the rumble for the nodes split in a tick; 1 is the strongest rumble.
 const TORN: f32 = 0.6;
 
 /// Action triggered once per press.
@@ -60,8 +60,8 @@ impl Devices {
     }
 
     /// Reads the devices. Adds their input to `wishes`, and returns the pressed actions and the camera's
-    /// turning speed (right, up). The deflection of a device with force feedback is a position in the room
-    /// from `low` to `high` [m]; that of other devices is a velocity.
+    /// turning speed (right, up). The deflection of a device with force feedback sets the position of the
+    /// hand in the room from `low` to `high` [m]. The deflection of other devices sets its velocity.
     pub fn hear(
         &mut self,
         wishes: &mut HandInput,
@@ -104,8 +104,8 @@ impl Devices {
         (presses, look.clamp(Vec2::splat(-1.0), Vec2::splat(1.0)))
     }
 
-    /// Sends the contact force [N] to the device that moved the hand last. `turn` is the camera's azimuth
-    /// [rad], by which the force is rotated. If `silence` is given, all devices are silent for that reason.
+    /// Sends the contact force [N] to the device that moved the hand last. The force is rotated by `turn`,
+    /// the camera's azimuth [rad]. If `silence` is given, no device gets feedback, for that reason.
     pub fn feel(&mut self, contact: Vec3, turn: f32, silence: Option<Stop>) {
         self.forces.attend(&self.said, &self.pads, |_| {
             Some(Settings {

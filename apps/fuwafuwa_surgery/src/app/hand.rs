@@ -7,13 +7,14 @@ use egui::Vec2;
 use fuwafuwa::{Rotation, Vec3};
 use std::f32::consts::PI;
 
-/// Speed of the hand at full deflection of a key or stick [m/s]: horizontally and vertically.
+/// Horizontal speed of the hand at full deflection of a key or stick [m/s].
 const PACE: f32 = 0.06;
+/// Vertical speed of the hand at full deflection of a key or stick [m/s].
 const RISE: f32 = 0.04;
 /// Turning speed of the tool at full deflection [rad/s].
 const TURN: f32 = 1.5;
 
-/// Motion that the user requests for a frame.
+/// Motion of the hand that the user requests in a frame.
 #[derive(Clone, Debug, Default)]
 pub struct HandInput {
     /// Target position for the hand [m]; its height is ignored. `None` keeps the position.
@@ -68,7 +69,7 @@ impl Hand {
         }
     }
 
-    /// Takes up a tool. If it is another one, it enters at `height` [m].
+    /// Takes up a tool. A tool other than the current one starts at the height `height` [m].
     pub fn take(&mut self, tool: Tool, height: f32) {
         if tool != self.tool {
             self.tool = tool;
@@ -76,8 +77,8 @@ impl Hand {
         }
     }
 
-    /// Moves the hand for `seconds` within a room, given by two opposite corners [m]. `turn` is the azimuth
-    /// of the camera [rad].
+    /// Moves the hand for `seconds` according to `wishes`. The hand stays within a room, given by two
+    /// opposite corners [m]. `turn` is the azimuth of the camera [rad].
     pub fn pass(&mut self, wishes: &HandInput, [low, high]: [Vec3; 2], turn: f32, seconds: f32) {
         if let Some(place) = wishes.place {
             self.goal = place.with_y(self.goal.y);
@@ -87,7 +88,7 @@ impl Hand {
         self.goal.y += wishes.wheel + RISE * wishes.lift.clamp(-1.0, 1.0) * seconds;
         self.goal = self.goal.clamp(low, high);
         let [around, up, over] = (self.turned + wishes.turn * (TURN * seconds)).to_array();
-        // Yaw is unlimited; pitch and roll stop at half a turn, upside down.
+        // Leaves yaw unlimited; limits pitch and roll to half a turn, which is upside down.
         self.turned = Vec3::new(wrapped(around), up.clamp(-PI, PI), over.clamp(-PI, PI));
         self.grips = wishes.grips;
     }
@@ -134,7 +135,7 @@ mod tests {
             wheel: -1.0,
             ..HandInput::default()
         };
-        // Seen from the patient's right (+x), away from the camera means to the patient's left (−x).
+        // The camera looks from the patient's right (+x), so moving away from the camera must decrease x.
         hand.pass(&wishes, ROOM, 0.5 * PI, 0.5);
         assert!((hand.goal.x + 0.03).abs() < 1e-6 && hand.goal.z.abs() < 1e-6);
         assert_eq!(hand.goal.y, 0.0);

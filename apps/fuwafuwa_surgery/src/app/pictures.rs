@@ -1,4 +1,4 @@
-//! Picture of the organ on its table, with the tool and the force on it.
+//! Picture of the organ on its table, with the tool and the force of the tissue on the tool.
 
 use super::session::Session;
 use app_shell::{SpaceStage, View};
@@ -30,7 +30,7 @@ pub fn palette() -> Palette {
     }
 }
 
-/// Draws the organ into a part of the window and returns the view.
+/// Draws organ, table and tool into a part of the window and returns the view.
 pub fn show(
     ui: &Ui,
     rect: Rect,

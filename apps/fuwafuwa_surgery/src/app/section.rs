@@ -30,7 +30,7 @@ pub enum Shown {
 pub struct Slices {
     /// Point through which all slices pass [m].
     through: Vec3,
-    /// Whether that point follows the tool.
+    /// Whether the point `through` follows the tool.
     pub follows: bool,
     /// Quantity shown by colours.
     pub shown: Shown,
@@ -57,7 +57,7 @@ impl Slices {
         }
     }
 
-    /// Updates one slice, another one in each call.
+    /// Updates one of the three slices, in turn.
     pub fn refresh(&mut self, procedure: &Procedure) {
         if self.follows {
             self.through = procedure.tool().position();
@@ -67,8 +67,8 @@ impl Slices {
         self.next = (self.next + 1) % Cut::ALL.len();
     }
 
-    /// Draws the slices below each other. Pressing on a slice moves the planes of the other two to that
-    /// point.
+    /// Draws the slices below each other. If the user presses on a slice, the other two slices move to the
+    /// pressed point.
     pub fn show(&mut self, ui: &mut Ui, procedure: &Procedure, seen: [Vec3; 2], colours: &Palette) {
         let all = ui.available_size();
         let height = (all.y - 2.0 * ui.spacing().item_spacing.y) / 3.0;
@@ -141,7 +141,7 @@ impl Slices {
 }
 
 /// Describes the position of a slice through a point of the patient, RAS+ [mm]. For example, `R 12 mm` is 12
-/// mm to the right.
+/// mm to the right of the origin.
 fn place_in_words(cut: Cut, [right, front, up]: [f64; 3]) -> String {
     let (along, [less, more]) = match cut {
         Cut::Axial => (up, ["I", "S"]),
@@ -161,8 +161,9 @@ fn screen(colour: Colour) -> Color32 {
 struct Page {
     rect: Rect,
     cut: Cut,
-    /// Page coordinates at the centre of `rect` [m], and scale [points/m].
+    /// Page coordinates at the centre of `rect` [m].
     middle: Vec2,
+    /// Scale [points/m].
     scale: f32,
 }
 
@@ -185,8 +186,8 @@ impl Page {
         pos2(centre.x + way.x, centre.y - way.y)
     }
 
-    /// Sets two coordinates of `place` to those of a screen position. The coordinate perpendicular to the
-    /// slice is kept.
+    /// Sets two coordinates of `place` to those of the screen position `at`. The coordinate perpendicular to
+    /// the slice is kept.
     fn point(&self, at: Pos2, place: &mut Vec3) {
         let way = (at - self.rect.center()) / self.scale;
         let [u, v] = [self.middle.x + way.x, self.middle.y - way.y];

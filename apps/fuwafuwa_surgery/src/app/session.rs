@@ -8,11 +8,12 @@ use app_shell::{CameraRig, Clock, Pace};
 use fuwafuwa::Vec3;
 use std::sync::Arc;
 
-/// Ticks between two measurements of the volumes of the pieces.
+/// Number of ticks after which the volumes of the pieces are measured again.
 const LOOKS: usize = 20;
-/// Regions shown around the organ, in the main view and in slices: margins to the sides, below and above, as
-/// fractions of the organ's size.
+/// Margins around the organ in the main view: to the sides, below and above, as fractions of the organ's
+/// size.
 const SEEN: [f32; 3] = [0.12, 0.0, 0.5];
+/// Margins around the organ in slices: to the sides, below and above, as fractions of the organ's size.
 const SLICED: [f32; 3] = [0.1, 0.05, 0.25];
 
 /// Source of the tool's motion.
@@ -35,7 +36,7 @@ pub struct Session {
     pub sliced: [Vec3; 2],
     /// Whether the procedure is paused.
     pub is_paused: bool,
-    /// Pieces as of the last measurement.
+    /// Volumes of the pieces as of the last measurement.
     pub parts: Vec<PieceVolume>,
     looked: usize,
     /// Message at the end of a replay, or the error that stopped the procedure.
@@ -91,12 +92,12 @@ impl Session {
         }
     }
 
-    /// Returns whether the tool is moved by hand.
+    /// Returns whether the user moves the tool; false in a replay.
     pub fn is_by_hand(&self) -> bool {
         matches!(self.course, MotionSource::Hand(_))
     }
 
-    /// Returns the played fraction of a recording, 0 to 1; `None` by hand.
+    /// Returns the replayed fraction of a recording, 0 to 1; `None` if the user moves the tool.
     pub fn played(&self) -> Option<f32> {
         match &self.course {
             MotionSource::Hand(_) => None,
@@ -107,7 +108,7 @@ impl Session {
         }
     }
 
-    /// Returns the last sample; zeros before the first tick.
+    /// Returns the measurements of the last tick; zeros before the first tick.
     pub fn last(&self) -> Sample {
         let samples = self.procedure().samples();
         samples.last().copied().unwrap_or_default()
@@ -137,7 +138,7 @@ impl Session {
     }
 
     /// Advances the procedure by `seconds`, or by less if the machine is too slow. `clock` measures the
-    /// ticks.
+    /// computing time of the ticks.
     pub fn pass(&mut self, clock: &Clock, seconds: f64) {
         if self.is_paused || self.is_over() {
             self.pace.forget();
@@ -162,7 +163,7 @@ impl Session {
         std::mem::take(&mut self.torn)
     }
 
-    /// Returns whether no more ticks can follow.
+    /// Returns whether the procedure has ended, so that no more ticks can follow.
     pub fn is_over(&self) -> bool {
         match &self.course {
             _ if self.has_ended => true,

@@ -1,4 +1,5 @@
-//! Reproducible files and archives: sorted by name, without owner, with the time of the commit.
+//! Reproducible files and archives. Entries are sorted by name, have no owner, and carry the time of the
+//! commit.
 
 use super::kit::ReleaseBuild;
 use crate::shell::{Failure, file_error, is_on_path, lacking, root};
@@ -12,14 +13,14 @@ pub fn text_of(path: &str) -> Result<String, Failure> {
     fs::read_to_string(&path).map_err(|error| file_error(&path, &error))
 }
 
-/// Copies a file, and creates the parent folders.
+/// Copies a file, and creates the folders of the target path.
 pub fn put(from: &Path, to: &Path) -> Result<(), Failure> {
     make_room(to)?;
     fs::copy(from, to).map_err(|error| file_error(from, &error))?;
     Ok(())
 }
 
-/// Writes a file, and creates the parent folders.
+/// Writes a text to a file, and creates its folders.
 pub fn put_text(text: &str, to: &Path) -> Result<(), Failure> {
     make_room(to)?;
     fs::write(to, text).map_err(|error| file_error(to, &error))
@@ -37,7 +38,8 @@ pub fn compress(files: &[PathBuf]) -> Result<(), Failure> {
     run(&mut gzip, "gzip failed; Debian: gzip")
 }
 
-/// Sets times and permissions of all files below a folder: the time of the commit, and executable programs.
+/// Sets time and permissions of all files below a folder. The time is that of the commit; programs become
+/// executable.
 pub fn settle(kit: &ReleaseBuild, folder: &Path) -> Result<(), Failure> {
     let script = r#"
         cd "$1" &&
@@ -57,7 +59,7 @@ pub fn settle(kit: &ReleaseBuild, folder: &Path) -> Result<(), Failure> {
     )
 }
 
-/// Packs the folder `name` of the stage as .tar.gz.
+/// Packs the folder `name` inside `stage` as .tar.gz.
 pub fn tar(kit: &mut ReleaseBuild, stage: &Path, name: &str) -> Result<(), Failure> {
     settle(kit, &stage.join(name))?;
     let archive = kit.folder().join(format!("{name}.tar.gz"));
@@ -75,16 +77,16 @@ pub fn tar(kit: &mut ReleaseBuild, stage: &Path, name: &str) -> Result<(), Failu
     Ok(())
 }
 
-/// Packs the folder `name` of the stage as .zip.
+/// Packs the folder `name` inside `stage` as .zip.
 pub fn zip(kit: &mut ReleaseBuild, stage: &Path, name: &str) -> Result<(), Failure> {
     if !is_on_path("zip") {
         return Err(lacking("zip", "Debian: zip"));
     }
     settle(kit, &stage.join(name))?;
     let archive = kit.folder().join(format!("{name}.zip"));
-    // zip would add to an existing archive.
+    // Removes an existing archive, to which zip would add files.
     let _removed = fs::remove_file(&archive);
-    // Local times and user ids would make archives differ.
+    // Uses UTC and leaves out user ids (`-X`), because otherwise archives would differ between machines.
     let script = r#"find "$2" -type f | LC_ALL=C sort | TZ=UTC zip -X -9 -q -@ "$1""#;
     let mut shell = Command::new("sh");
     shell.args(["-c", script, "zip"]).arg(&archive).arg(name);

@@ -1,4 +1,4 @@
-//! State of a release: version, time, folder, and which parts were built from the current commit.
+//! State of a release: version, time, folder, and the parts that were built from the current commit.
 
 use crate::packages::IfMissing;
 use crate::shell::{Failure, file_error, output_of, root, target};
@@ -16,8 +16,9 @@ pub struct ReleaseBuild {
     commit: String,
     is_dirty: bool,
     folder: PathBuf,
-    /// Part that is being built; `made` are its files.
+    /// Part that is being built.
     part: &'static str,
+    /// Files of the part that is being built.
     made: Vec<PathBuf>,
 }
 
@@ -65,7 +66,8 @@ impl ReleaseBuild {
 
     /// Whether the files of this part exist and were built from this commit.
     pub fn has(&self, part: &str) -> bool {
-        // The sums are always built: that takes less time than checking them.
+        // Always rebuilds the checksums (`sums`), which takes less time than checking whether they are
+        // current.
         if self.is_dirty || part == "sums" {
             return false;
         }
@@ -75,10 +77,10 @@ impl ReleaseBuild {
         })
     }
 
-    /// Begins a part: forgets its earlier build.
+    /// Begins a part: deletes the record of its earlier build.
     pub fn begin(&mut self, part: &'static str) {
         (self.part, self.made) = (part, Vec::new());
-        // The file is missing if the part was never built.
+        // Ignores the error if there is no record, because the part was never built.
         let _removed = fs::remove_file(self.note(part));
     }
 
@@ -99,7 +101,7 @@ impl ReleaseBuild {
             note += &format!("{}\n", file.display());
         }
         let path = self.note(self.part);
-        // A build with uncommitted changes belongs to no commit.
+        // Writes no record if there are uncommitted changes: the build belongs to no commit.
         match self.is_dirty {
             true => Ok(()),
             false => fs::write(&path, note).map_err(|error| file_error(&path, &error)),
@@ -109,12 +111,12 @@ impl ReleaseBuild {
     /// Deletes the files of a failed part.
     pub fn discard(&self) {
         for file in self.made.iter().filter(|file| file.is_file()) {
-            // The file may be gone already.
+            // Ignores the error if the file is gone already.
             let _removed = fs::remove_file(file);
         }
     }
 
-    /// Path of the file that records the commit and the files of a built part.
+    /// Path of the record of a built part: its commit and its files.
     fn note(&self, part: &str) -> PathBuf {
         self.folder.join("parts").join(part)
     }
@@ -122,13 +124,13 @@ impl ReleaseBuild {
     /// Creates an empty folder to assemble a package in.
     pub fn stage(&self, name: &str) -> Result<PathBuf, Failure> {
         let stage = self.folder.join("stage").join(name);
-        // The folder is missing at the first build.
+        // Ignores the error if the folder is missing, as in the first build.
         let _removed = fs::remove_dir_all(&stage);
         fs::create_dir_all(&stage).map_err(|error| file_error(&stage, &error))?;
         Ok(stage)
     }
 
-    /// Returns the folder that `part` assembled.
+    /// Returns the folder `name`, in which `part` assembled a package.
     pub fn staged(&self, name: &str, part: &str) -> Result<PathBuf, Failure> {
         let stage = self.folder.join("stage").join(name);
         match stage.is_dir() {

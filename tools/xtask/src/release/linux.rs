@@ -1,4 +1,4 @@
-//! Packages for Linux: the same tree for a .deb and for an archive that needs no installation.
+//! Packages for Linux. A .deb and an archive that needs no installation contain the same file tree.
 
 use super::files::{compress, put, put_text, settle, tar as archive, text_of};
 use super::kit::ReleaseBuild;
@@ -8,11 +8,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Newest glibc version that symbols may require: that of Ubuntu 22.04, older than Debian 12's.
+/// Newest glibc version that a program may require: that of Ubuntu 22.04. Debian 12 has a newer one.
 const GLIBC: [u32; 2] = [2, 35];
 /// Maintainer of the package. The project has no e-mail address.
 const MAINTAINER: &str = "The tamaire developers <tamaire@localhost>";
-/// Packages of the libraries that a window loads at run time. The linker does not know these libraries.
+/// Packages of the libraries that a window loads at run time. They are listed by hand, because the linker
+/// does not know these libraries.
 const WINDOW: &str = "libx11-6, libx11-xcb1, libxcursor1, libxi6, libxkbcommon0, libxkbcommon-x11-0, libvulkan1 | libegl1";
 
 /// Sizes of the icon that exist as bitmaps.

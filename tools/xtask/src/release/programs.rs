@@ -14,7 +14,7 @@ use std::process::Command;
 pub const PACKAGES: [&str; 2] = ["tamaire", "fuwafuwa_cli"];
 const PROFILE: &str = "dist";
 
-/// Builds both programs for this system or another; returns their folder.
+/// Builds both programs for this system, or for the system of `compiler`. Returns the folder of the programs.
 pub fn build(kit: &ReleaseBuild, compiler: Option<&Compiler>) -> Result<PathBuf, Failure> {
     let triple = match compiler {
         Some(compiler) => compiler.system.triple.to_string(),
@@ -49,7 +49,8 @@ pub fn build(kit: &ReleaseBuild, compiler: Option<&Compiler>) -> Result<PathBuf,
     for language in ["CFLAGS", "CXXFLAGS"] {
         command.env(language, flags.join(" "));
     }
-    // A fixed path, since players do not have the sources from which `fuwafuwa bench` builds its comparison.
+    // Sets a fixed path of the sources, so that no local path leaks. Players do not have the sources, which
+    // only `fuwafuwa bench` with Rapier would use.
     command.env("FUWAFUWA_SOURCES", "/tamaire/apps/fuwafuwa_cli");
     command.env("SOURCE_DATE_EPOCH", &kit.epoch);
     command.env("CARGO_INCREMENTAL", "0");
@@ -58,8 +59,8 @@ pub fn build(kit: &ReleaseBuild, compiler: Option<&Compiler>) -> Result<PathBuf,
     Ok(folder)
 }
 
-/// Copies a program without its debug symbols, because not every linker omits them. `strip` is the program
-/// that removes them.
+/// Copies a program without its debug symbols, because not every linker omits the symbols. `strip` is the
+/// program that removes them.
 pub fn put_stripped(
     kit: &ReleaseBuild,
     from: &Path,
@@ -69,7 +70,7 @@ pub fn put_stripped(
     put(from, to)?;
     let mut command = Command::new(strip);
     command.arg("--strip-all").arg(to);
-    // Windows programs contain the time of linking, by default the current time.
+    // Sets the time of linking, which Windows programs contain, to the time of the commit.
     command.env("SOURCE_DATE_EPOCH", &kit.epoch);
     execute(&mut command, "Debian: binutils")
 }
@@ -82,7 +83,8 @@ pub fn host() -> Result<String, Failure> {
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_string())
 }
 
-/// Writes a file with the licences of all contents; without Node, only THIRD-PARTY.md is used.
+/// Writes a file with the licences of everything that the programs contain. Without Node, only THIRD-PARTY.md
+/// is used.
 pub fn licences(kit: &ReleaseBuild, triple: &str) -> Result<PathBuf, Failure> {
     let file = kit
         .folder()

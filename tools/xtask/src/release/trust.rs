@@ -54,8 +54,8 @@ pub fn deny(kit: &mut ReleaseBuild) -> Result<(), Failure> {
         &mut check,
         "see deny.toml for the permitted contents and the reasons",
     )?;
-    // The download shows whether the database is available. If it is, a failed check of the advisories is an
-    // error.
+    // Downloads the database of advisories first. A failed download counts as a limitation of this machine,
+    // a failed check of the advisories as an error.
     let mut fetch = cargo();
     fetch.args(["deny", "fetch", "db"]);
     if execute(&mut fetch, "").is_err() {

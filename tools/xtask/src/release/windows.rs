@@ -8,7 +8,7 @@ use crate::shell::{Failure, file_error, lacking, output_of, root};
 use std::fs;
 use std::path::Path;
 
-/// Libraries that come with a compiler and not with Windows.
+/// Libraries of compilers that Windows lacks. A program for players must not require them.
 const NOT_THERE: [&str; 4] = ["libgcc", "libstdc++", "libwinpthread", "libssp"];
 
 /// Builds and packs both programs.
@@ -49,7 +49,7 @@ pub fn archive(kit: &mut ReleaseBuild) -> Result<(), Failure> {
     zip(kit, &stage, &name)
 }
 
-/// Refuses a program that requires a library which is not part of Windows.
+/// Refuses a program that requires a library that Windows lacks.
 fn check_imports(program: &Path) -> Result<(), Failure> {
     let path = program.display().to_string();
     let Some(text) = output_of("x86_64-w64-mingw32-objdump", &["-p", &path]) else {

@@ -1,6 +1,6 @@
-//! Runs libFuzzer on one door of `fuzz_targets`, selected by the environment: `DOOR=level`. With
-//! `SEEDS=folder` it only writes valid seed inputs for each door into the folder, and next to them
-//! dictionaries of their tokens.
+//! Runs libFuzzer on one door of `fuzz_targets`. The environment variable `DOOR` selects the door, for
+//! example `DOOR=level`. With `SEEDS=folder` the program instead writes valid seed inputs and a dictionary of
+//! their tokens for each door into the folder.
 
 use fuzz_targets::{Door, noise};
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! The fuzzer. Only a build with `--cfg fuzzing`, as `cargo xtask fuzz` makes it, contains libFuzzer.
+//! The program that fuzzes the doors. Only a build with `--cfg fuzzing`, as `cargo xtask fuzz` makes it,
+//! contains libFuzzer.
 #![cfg_attr(fuzzing, no_main)]
 
 #[cfg(fuzzing)]
