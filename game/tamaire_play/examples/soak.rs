@@ -21,7 +21,7 @@ const MOST_MINUTES: usize = 60;
 /// Seed of the hands' movement.
 const SEED: u64 = 7;
 
-/// Number of ticks in a minute, and between two checks of the room and the memory.
+/// Number of ticks in a minute.
 const MINUTE: usize = 60 * 60;
 const LOOK: usize = 60;
 
@@ -31,7 +31,8 @@ const MARGIN: f32 = 1.0;
 /// Tolerated depth of a hand, or of the centre of a piece, in a wall [m].
 const HAND_MARGIN: f32 = 1e-3;
 
-/// Maximum memory per element or node [bytes]. Tearing adds elements and nodes.
+/// Maximum memory per element or node [bytes]. Memory is checked per part because tearing adds elements and
+/// nodes.
 const MOST_EACH: f32 = 1200.0;
 /// Maximum factor by which the memory per element or node grows from the first half of a run to the second.
 /// It is above 1 because vectors double their capacity now and then.
@@ -45,7 +46,7 @@ thread_local! {
 }
 
 fn count(change: impl Fn(usize) -> usize) {
-    // A thread may free memory after its thread-local counter was destroyed.
+    // Ignores the error: a thread may free memory after its thread-local counter was destroyed.
     let _ = HELD.try_with(|held| held.set(change(held.get())));
 }
 
@@ -90,7 +91,7 @@ fn parse(words: &[String]) -> Result<(usize, Vec<Level>), String> {
             .filter(|minutes| (1..=MOST_MINUTES).contains(minutes))
             .ok_or_else(|| format!("expected 1 to {MOST_MINUTES} minutes first, found {word:?}"))?,
     };
-    // 3D levels take longest and start first.
+    // Puts 3D levels first, because they take longest.
     let all = NAMED_3D.iter().chain(&NAMED).map(|(id, _)| id.to_string());
     let named = words.iter().skip(1).cloned();
     let ids: Vec<String> = match words.len() {
@@ -167,7 +168,8 @@ fn play<D: Dim>(level: Level, minutes: usize) -> Result<(), String> {
     }
 }
 
-/// Returns the depth of the deepest node in a wall [m]. Fails if something is outside the room or not finite.
+/// Returns how deep the deepest node is in a wall [m]. Returns an error if something is outside the room or
+/// not finite.
 fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
     let [low, high] = round.level().arena();
     let beyond = |from: Vec3, to: Vec3| {
@@ -185,7 +187,7 @@ fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
     for (_, body) in round.world().soft_bodies() {
         for piece in body.piece_views() {
             let depth = beyond(piece.low, piece.high);
-            // Non-finite values appear in the centre only: the bounds ignore them.
+            // Checks the centre too, because the bounds ignore non-finite values.
             let middle = beyond(piece.centre, piece.centre);
             if !piece.centre.is_finite()
                 || depth > MARGIN * body.grid().voxel_size()
@@ -206,9 +208,10 @@ fn parts<D: Dim>(round: &Round<D>) -> [usize; 2] {
     [elements, meshes.map(|mesh| mesh.node_count()).sum()]
 }
 
-/// Returns the memory that this thread holds per element or node [bytes], without the recorded input.
+/// Returns the memory that this thread holds per element or node [bytes], without the memory for recorded
+/// input.
 fn held_each<D: Dim>(round: &Round<D>) -> f32 {
-    // The capacity of a growing vector is up to twice its length.
+    // Counts the recorded input twice, because the capacity of a growing vector is up to twice its length.
     let record = 2 * size_of_val(round.frames()) + 2 * size_of_val(round.hashes());
     let rest = HELD.get().saturating_sub(record);
     rest as f32 / parts(round).iter().sum::<usize>() as f32
@@ -228,7 +231,7 @@ fn tell<D: Dim>(id: &str, minute: usize, round: &Round<D>, [half, worst, deepest
     ));
 }
 
-/// Prints a line. The rounds continue even if the output is closed.
+/// Prints a line. Ignores a closed output, so that the rounds continue.
 fn say(line: &str) {
     let _ = writeln!(io::stdout(), "{line}");
 }

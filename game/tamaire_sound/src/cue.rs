@@ -21,7 +21,7 @@ pub enum Cue {
         /// Position, from −1 at the left edge of the picture to 1 at the right.
         x: f32,
     },
-    /// A crumb landed on an obstacle.
+    /// A crumb landed.
     Crumb {
         /// Impact speed [m/s], usually about 1.
         speed: f32,

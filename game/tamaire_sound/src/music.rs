@@ -1,4 +1,4 @@
-//! Background music: slow chords with a few random notes that fit the chords. The random notes never repeat.
+//! Background music: slow chords with a few random notes that fit the chords. The music never repeats exactly.
 
 use crate::grain::{Bus, Grain, Voices};
 use crate::part::{Noise, note};

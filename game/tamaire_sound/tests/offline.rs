@@ -67,8 +67,8 @@ fn centroid(samples: &[f32]) -> f32 {
     (difference / power).sqrt() * RATE as f32 / std::f32::consts::TAU
 }
 
-/// Returns the roughness of samples, which detects clicks: it is large for a click and far smaller for a loud
-/// sound.
+/// Returns the roughness of samples: the largest step between neighbouring ones. A click has a large step, and
+/// even a loud sound has only far smaller ones.
 fn roughest(samples: &[f32]) -> f32 {
     let step = |k: &[f32]| (k[1] - k[0]).abs();
     samples.windows(2).map(step).fold(0.0, f32::max)
