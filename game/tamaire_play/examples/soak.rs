@@ -23,6 +23,7 @@ const SEED: u64 = 7;
 
 /// Number of ticks in a minute.
 const MINUTE: usize = 60 * 60;
+/// Number of ticks between two checks of the room and the memory.
 const LOOK: usize = 60;
 
 /// Tolerated depth of a piece in a wall, in voxels. A crumb between a hand and a wall is pressed flat and

@@ -10,6 +10,7 @@ use sight::{Sight, split};
 
 /// Speed of a bot's hand on a free path [m/s].
 const BRISK: f32 = 3.0;
+/// Speed of a bot's hand when it pushes [m/s].
 const GENTLE: f32 = 0.7;
 /// Initial speed of a bot's hand when it withdraws from the body [m/s].
 const CAREFUL: f32 = 0.2;
@@ -28,6 +29,7 @@ const CLOSEST: [f32; 2] = [0.0, 0.4];
 /// Decrease of the pushed piece's distance from the mouth that counts as progress in 3D [m]. Heavy pieces on
 /// a floor move slowly, so a bot must wait longer for them.
 const NEARER: f32 = 0.05;
+/// Reduction of the waiting time without progress each time the piece has come `NEARER` [ticks].
 const ON_ITS_WAY: u32 = 20;
 /// Depth added to a push when a bot has long made no progress, in 2D and in 3D [m]. The hand's target lies
 /// this much deeper in the piece, so the hand pushes harder.
