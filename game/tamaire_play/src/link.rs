@@ -52,6 +52,7 @@ use serde::{Deserialize, Serialize};
 
 /// Digit in a fragment that stands for bytes in base64url.
 const FORMAT: char = '1';
+/// Digit in a fragment that stands for bytes in decimal digits.
 const DIGITS: char = '0';
 const ROUND: char = 'r';
 const LEVEL: char = 'l';
@@ -316,8 +317,7 @@ mod tests {
     #[test]
     fn links_with_a_valid_checksum_are_still_checked() {
         let damaged = LinkError::Damaged.to_string();
-        // A text of eight megabytes that compresses to few bytes. Reading must fail without allocating its
-        // size.
+        // A text of eight megabytes that compresses to few bytes. Reading the link must fail quickly.
         let bomb = whole(&" ".repeat(8 << 20));
         assert_eq!(refusal(LEVEL, &bomb), damaged);
         assert_eq!(refusal(ROUND, &(VERSION, round(bomb, 1, vec![0]))), damaged);

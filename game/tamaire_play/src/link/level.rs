@@ -59,7 +59,7 @@ impl SentLevel {
         if sent.id.chars().count() > MAX_NAME {
             return Err(LinkError::Damaged);
         }
-        // A custom level must have a file extension in its name, so that it cannot take the name of a
+        // Appends a file extension to the name of a custom level, so that it cannot take the name of a
         // built-in level.
         let is_made = matches!(sent.content, Content::Whole(_)) && !sent.id.contains('.');
         let id = sent.id.clone() + if is_made { ".toml" } else { "" };
