@@ -81,8 +81,9 @@ pub struct Coupling {
 
 #[derive(Clone, Copy, Debug)]
 struct Memory {
-    /// Last stick position, −1 to 1 per axis; `slow_aim` is the low-pass filtered stick position.
+    /// Last stick position, −1 to 1 per axis.
     aim: [f32; 2],
+    /// Stick position after the low-pass filter, −1 to 1 per axis.
     slow_aim: [f32; 2],
     /// Filtered contact force [full forces].
     contact: [f32; 2],

@@ -19,9 +19,9 @@ const LEAST: f32 = 0.03;
 const RISE: f32 = 1.5;
 /// Time for which the stick must be still before a push [s].
 const REST: f32 = 0.5;
-/// Limits of stick movements, as shares of the travel from the middle to the rim. Up to `NEAR` a stick counts
-/// as still. A movement of `FAR` ends a push.
+/// Largest movement of a stick that counts as still, as a share of the travel from the middle to the rim.
 const NEAR: f32 = 0.04;
+/// Movement of a stick that ends a push, as a share of the travel from the middle to the rim.
 const FAR: f32 = 0.25;
 /// Maximum duration of a measurement [s].
 const PATIENCE: f32 = 45.0;

@@ -69,8 +69,8 @@ impl VirtualDevice {
     }
 
     /// Moves the axis with this number to a value from −1 to 1. Returns whether the axis exists. On pads,
-    /// axes 0 and 1 are the left stick, 2 and 3 the right stick (y increases towards the player), 4 and 5 the
-    /// triggers (−1 at rest).
+    /// axes 0 and 1 are the left stick, 2 and 3 the right one, with y towards the player. Axes 4 and 5 are
+    /// the triggers, with −1 at rest.
     pub fn axis(&self, axis: usize, value: f32) -> bool {
         self.act(PuppetAct::Axis(axis, (value * 32767.0) as i16))
     }

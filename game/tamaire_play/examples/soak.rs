@@ -1,8 +1,8 @@
-//! Soak test: two hands that move at random for minutes. Nothing may break, leak or leave the room.
+//! Soak test: two hands move at random for minutes. Nothing may break, leak or leave the room.
 //!
-//! `cargo run --release -p tamaire_play --example soak -- [MINUTES [LEVEL …]]`, or `cargo xtask soak` with
-//! the same arguments, plays the given levels (by default all built-in ones) for the given time (by default
-//! ten minutes), each on its own thread. It prints a row per minute and level, and fails if a check failed.
+//! `cargo run --release -p tamaire_play --example soak -- [MINUTES [LEVEL …]]` plays the given levels for the
+//! given time, each on its own thread. By default it plays all built-in levels for ten minutes. `cargo xtask
+//! soak` takes the same arguments. The test prints a row per minute and level, and fails if a check failed.
 
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Vec3};
 use std::alloc::{GlobalAlloc, Layout, System};

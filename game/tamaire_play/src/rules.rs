@@ -34,8 +34,9 @@ pub struct Progress {
     pub pieces: usize,
     /// Time for which enough mass has rested in the basket [s].
     pub held: f32,
-    /// Whether at some moment, since enough mass rests in the basket, the bars did not squeeze it. If there
-    /// was no such moment, a win with a torn body counts as [`Route::Mix`].
+    /// Whether the bars stopped squeezing the content of the basket at some moment of the current hold, the
+    /// time for which enough mass has rested there. If never, a win with a torn body counts as
+    /// [`Route::Mix`].
     pub relaxed: bool,
     /// Outcome of the round; `None` before a win.
     pub outcome: Option<Outcome>,

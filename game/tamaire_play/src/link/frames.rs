@@ -37,8 +37,9 @@ pub fn read(bytes: &[u8], count: usize) -> Option<Vec<InputFrame>> {
 /// Parameters for coding frames, stored in the first byte.
 #[derive(Copy, Clone, Debug)]
 struct Method {
-    /// Whether the prediction is that a hand keeps its velocity, or that it rests. On a slow screen a mouse
-    /// position arrives only every few ticks. Hands then move in jumps, and rest is the better prediction.
+    /// `true`: a hand is predicted to keep its velocity. `false`: a hand is predicted to rest. Rest is the
+    /// better prediction on a slow screen, where a mouse position arrives only every few ticks and hands move
+    /// in jumps.
     goes_on: bool,
     /// Exponent of the largest power of two that divides all coordinates. They are divided by it before
     /// coding.
