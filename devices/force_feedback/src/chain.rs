@@ -2,20 +2,20 @@
 
 use crate::Settings;
 
-/// Duration of the ramp-up after a reset [s]. It begins with the first noticeable force.
+/// Duration of the ramp-up of forces after a reset [s]. The ramp-up begins with the first noticeable force.
 const ARMING: f32 = 1.0;
-/// Threshold of a noticeable force [full forces].
+/// Force from which the ramp-up begins: the smallest noticeable force [full forces].
 const WORTH: f32 = 0.01;
-/// Longest time that counts for one step [s], so that a delayed thread does not catch up with a jerk.
+/// Upper limit of the duration of a step [s]. Without it, the force would jump after a delay of the thread.
 const LONGEST: f32 = 0.01;
 
-/// Safety chain: gain → soft clip → slew limit → clamp → finite check. Handles both axes; each output is at
-/// most one full force.
+/// Safety chain: gain → soft clip → slew limit → clamp → finite check. Handles the x and the y axis; the
+/// output per axis is at most one full force.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Chain {
     /// Progress of the ramp-up, 0 to 1; `None` before the first noticeable force.
     armed: Option<f32>,
-    /// Last output [full forces].
+    /// Output of the last step, per axis [full forces].
     force: [f32; 2],
 }
 
@@ -43,7 +43,7 @@ impl Chain {
             let next = *force + (wish - *force).clamp(-most, most);
             *force = next.clamp(-settings.clamp, settings.clamp);
         }
-        // Last safeguard: the code above never gives a non-finite value.
+        // Guards against errors in the code above, which should never give a non-finite value.
         self.force = finite(self.force);
         self.force
     }
@@ -58,7 +58,8 @@ impl Chain {
     }
 }
 
-/// Soft clip: keeps small forces almost unchanged, limits the length to less than 1 and keeps the direction.
+/// Soft clip: keeps small forces almost unchanged. Large forces keep their direction and get a length below
+/// 1.
 fn soft_clip(force: [f32; 2]) -> [f32; 2] {
     let longer = force[0].hypot(force[1]).hypot(1.0);
     finite(force.map(|k| k / longer))

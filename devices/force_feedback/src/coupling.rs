@@ -39,48 +39,51 @@ use crate::Settings;
 
 /// Ratio of damping to stiffness [s], about the delay between computing a force and feeling it.
 const LEAD: f32 = 0.03;
-/// Time constant of the low-pass filter for the stick velocity [s]. A larger value lags; with a smaller one
-/// the steps of a coarse axis are felt.
+/// Time constant of the low-pass filter for the stick velocity [s]. A larger value delays the damping force.
+/// With a smaller value, players feel the steps of a coarse axis.
 const SPEED: f32 = 0.008;
-/// Time constant of the contact force filter [s]: one tick. Without it the tick rate is felt as a hum.
+/// Time constant of the low-pass filter for the contact force [s]: one tick. Without the filter, players feel
+/// the tick rate as a hum.
 const TICK: f32 = 0.016;
-/// Contact force from which the damper acts fully [full forces].
+/// Contact force from which the damper has its full strength; below, its strength grows linearly [full
+/// forces].
 const TOUCHING: f32 = 0.02;
 
 /// Last state reported by the simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// Sum of the contact forces on the simulated hand, averaged over the last tick [N]. x to the right, y
-    /// away from the player, as for the stick.
+    /// Sum of the contact forces on the simulated hand, averaged over the last tick [N]. The axes are those
+    /// of the stick: x to the right, y away from the player.
     pub contact: [f32; 2],
-    /// Meaning of the stick position.
+    /// Meaning of the stick position for the simulated hand.
     pub manner: StickMode,
 }
 
 /// Meaning of the stick position for the simulated hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StickMode {
-    /// The stick gives a position. The proxy follows it in free space.
+    /// The stick position sets the hand's position. In free space the proxy follows the stick.
     Position,
-    /// The stick gives a velocity. The proxy stays in the middle.
+    /// The stick position sets the hand's velocity. The proxy stays in the middle of the stick's travel.
     Velocity,
     /// Passes the contact force on unchanged and ignores the stick position. Only for a
-    /// [`Measurement`](crate::Measurement): motors of unknown mounting may push in the wrong direction, so a
-    /// force that depends on the stick position could oscillate.
+    /// [`Measurement`](crate::Measurement). Motors of unknown mounting may push in the wrong direction, and
+    /// then a force that depends on the stick position could oscillate.
     OpenLoop,
 }
 
-/// Spring, damper and slipping proxy of one device; see the head of this module.
+/// Virtual coupling of one device: spring, damper and slipping proxy. The head of this module explains it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Coupling {
-    /// `None` before the first step.
+    /// Values of the last step; `None` before the first step.
     memory: Option<Memory>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Memory {
-    /// Last stick position; `slow_aim` is its low-pass filtered value.
+    /// Last stick position, −1 to 1 per axis.
     aim: [f32; 2],
+    /// Stick position after the low-pass filter, −1 to 1 per axis.
     slow_aim: [f32; 2],
     /// Filtered contact force [full forces].
     contact: [f32; 2],
@@ -94,8 +97,8 @@ impl Coupling {
         self.memory = None;
     }
 
-    /// Returns the force on the stick [N], `duration` [s] after the last step, for the stick position `aim`:
-    /// x to the right, y away from the player, each −1 to 1.
+    /// Returns the force on the stick [N] for the stick position `aim`: x to the right, y away from the
+    /// player, each −1 to 1. `duration` is the time since the last step [s].
     pub fn step(
         &mut self,
         state: &State,
@@ -130,35 +133,36 @@ impl Coupling {
         approach(&mut memory.slow_aim, aim, share);
         let damper = spring * LEAD * (bears / TOUCHING).min(1.0);
         let drag = late.map(|k| damper * k / (SPEED + duration));
-        // A contact only pushes: removes a resulting pull along the contact force.
+        // A contact can only push. If damper and spring together would pull along the contact force, removes
+        // that part.
         let back = (dot(drag, along) - pull).max(0.0);
         [0, 1].map(|axis| (memory.pull[axis] - drag[axis] + back * along[axis]) * settings.full)
     }
 }
 
-/// Feedback of a tear, in addition to its effect on the contact force: the force drops for a moment. The
-/// feedback only reduces a force, so it cannot push the player.
+/// Feedback of a tear: reduces the force for a moment, in addition to the drop of the contact force. The
+/// feedback never increases a force, so it cannot push the player.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TearFeedback(f32);
 
 impl TearFeedback {
-    /// Duration of the feedback [s].
+    /// Time over which the feedback of the largest tear fades out [s].
     pub const TIME: f32 = 0.06;
     /// Fraction by which the largest tear reduces the force.
     const DEPTH: f32 = 0.7;
 
-    /// Reports a tear of a size from 0 to 1.
+    /// Reports a tear with a size from 0 to 1; 1 causes the strongest feedback.
     pub fn tear(&mut self, size: f32) {
         self.0 = self.0.max(size.clamp(0.0, 1.0));
     }
 
-    /// Returns the reduced force after another `duration` [s].
+    /// Returns `force`, reduced by the feedback. `duration` is the time since the last step [s].
     pub fn step(&mut self, force: [f32; 2], duration: f32) -> [f32; 2] {
         self.0 = (self.0 - duration / Self::TIME).max(0.0);
         force.map(|k| k * (1.0 - Self::DEPTH * self.0))
     }
 
-    /// Returns the remaining strength of the feedback, 0 to 1.
+    /// Returns the remaining strength of the tear feedback, 0 to 1.
     pub fn left(&self) -> f32 {
         self.0
     }

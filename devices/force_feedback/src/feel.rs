@@ -1,4 +1,4 @@
-//! Force of one device, from the command of the game to the device output, one step at a time.
+//! Force calculation of one device, one step at a time: from the command of the game to the output.
 
 use crate::{
     Ability, Chain, Command, Coupling, MAX_STATE_AGE, Output, Settings, State, Stop, TearFeedback,
@@ -9,7 +9,7 @@ use std::time::Duration;
 /// Largest accepted contact force per axis [N].
 const MOST: f32 = 1e6;
 
-/// Force calculation of one device.
+/// Force calculation of one device: watchdog, coupling, tear feedback and safety chain.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ForceController {
     coupling: Coupling,
@@ -18,7 +18,7 @@ pub struct ForceController {
     before: Option<Duration>,
 }
 
-/// Result of a step.
+/// Result of a step of [`ForceController`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepOutput {
     /// Output for the device.
@@ -30,13 +30,13 @@ pub struct StepOutput {
 }
 
 impl ForceController {
-    /// Reports a tear of a size from 0 to 1.
+    /// Reports a tear with a size from 0 to 1.
     pub fn tear(&mut self, size: f32) {
         self.give.tear(size);
     }
 
-    /// Returns the output at the time `now` for the stick position `aim`. A stop takes effect at once,
-    /// without the slew limit: removing a force does not jerk the hand.
+    /// Returns the output at the time `now` for the stick position `aim`. A stop sets the force to zero at
+    /// once, without the slew limit, because a vanishing force does not jerk the hand.
     pub fn step(
         &mut self,
         watchdog: &Watchdog,
@@ -91,7 +91,7 @@ impl ForceController {
         }
     }
 
-    /// Stops at once and resets the calculation.
+    /// Resets the calculation and returns a zero output, with the reason `why`.
     pub fn rest(&mut self, ability: Ability, why: Stop) -> StepOutput {
         *self = Self::default();
         StepOutput {
@@ -102,7 +102,7 @@ impl ForceController {
     }
 }
 
-/// Clamps both values; `None` if one is NaN.
+/// Clamps both components to ±`most`. Returns `None` if one of them is NaN.
 fn sane(both: [f32; 2], most: f32) -> Option<[f32; 2]> {
     let are_numbers = both.iter().all(|k| !k.is_nan());
     are_numbers.then(|| both.map(|k| k.clamp(-most, most)))

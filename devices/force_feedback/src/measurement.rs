@@ -2,27 +2,26 @@
 //!
 //! Each motor pushes in both directions, gently and only until the stick has moved enough. A second round
 //! repeats all pushes and must give the same result. A push begins only after the stick was still for a
-//! while. If the stick moves before the push can have moved it, the wait begins again. A hand on the stick
-//! could only fake a result by waiting before each of the eight pushes and then moving as a motor would, in
-//! both rounds alike.
+//! while. If the stick moves before the push is strong enough to move it, the waiting time starts again. A
+//! hand could fake a result only by imitating a motor in all eight pushes, after waiting for each of them.
 
 use crate::{Calibration, Settings};
 
-/// Directions of the pushes, in turn [full forces].
+/// Directions of the four pushes of a round, in order [full forces].
 const PUSHES: [[f32; 2]; 4] = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
-/// Number of rounds. Each contains all pushes.
+/// Number of rounds. Each round consists of all [`PUSHES`].
 const ROUNDS: usize = 2;
-/// Strongest push [full forces].
+/// Force at the end of a push, if the stick has not moved enough before [full forces].
 const MOST: f32 = 0.4;
-/// Force below which no stick moves [full forces].
+/// Force below which the push itself moves no stick [full forces]. Earlier movements come from a hand.
 const LEAST: f32 = 0.03;
 /// Time over which a push ramps up [s].
 const RISE: f32 = 1.5;
 /// Time for which the stick must be still before a push [s].
 const REST: f32 = 0.5;
-/// Stick travel from the middle to the rim = 1. `NEAR`: largest movement of a stick that counts as still.
-/// `FAR`: movement that ends a push.
+/// Largest movement of a stick that counts as still, as a share of the travel from the middle to the rim.
 const NEAR: f32 = 0.04;
+/// Movement of a stick that ends a push, as a share of the travel from the middle to the rim.
 const FAR: f32 = 0.25;
 /// Maximum duration of a measurement [s].
 const PATIENCE: f32 = 45.0;
@@ -38,7 +37,7 @@ pub struct Measurement {
     all: f32,
     /// Stick position at the start of the current push.
     start: [f32; 2],
-    /// Movements of the stick in the completed pushes.
+    /// Stick movement of each completed push, as a share of the travel from the middle to the rim.
     moves: [[f32; 2]; ROUNDS * PUSHES.len()],
 }
 
@@ -48,13 +47,14 @@ pub enum Measured {
     /// Push the stick with this force [full forces], with [`StickMode::OpenLoop`](crate::StickMode::OpenLoop) and
     /// [`Measurement::SETTINGS`], and report its position.
     Pushing([f32; 2]),
-    /// Result. `None` if it is unclear, for example because the stick was held or no motor pushed.
+    /// Measured calibration. `None` if the result is unclear, for example because the stick was held or no
+    /// motor pushed.
     Known(Option<Calibration>),
 }
 
 impl Measurement {
-    /// Settings for a measurement: default mounting, limited force. `full` is 1 N, so that full forces equal
-    /// newtons.
+    /// Settings for a measurement: default mounting and a low force limit. `full` is 1 N, so that a force in
+    /// newtons has the same number in full forces.
     pub const SETTINGS: Settings = Settings {
         strength: 1.0,
         full: 1.0,
@@ -64,7 +64,7 @@ impl Measurement {
         calibration: Calibration::IDENTITY,
     };
 
-    /// Returns the next action for the stick position `aim`, `duration` [s] after the last step.
+    /// Returns the next action for the stick position `aim`. `duration` is the time since the last step [s].
     pub fn step(&mut self, aim: [f32; 2], duration: f32) -> Measured {
         self.all += duration;
         if self.done == self.moves.len() || self.all > PATIENCE {
@@ -88,7 +88,7 @@ impl Measurement {
         Measured::Pushing([0.0; 2])
     }
 
-    /// Returns the progress, 0 to 1.
+    /// Returns the progress of the measurement, 0 to 1.
     pub fn progress(&self) -> f32 {
         let this = (self.time / (REST + RISE)).min(1.0);
         ((self.done as f32 + this) / self.moves.len() as f32).min(1.0)
@@ -104,14 +104,14 @@ impl Measurement {
     }
 }
 
-/// Returns the result of the four pushes of a round.
+/// Returns the calibration from the stick movements of one round, or `None` if they are unclear.
 fn of_one_round(moves: &[[f32; 2]]) -> Option<Calibration> {
     let of_motor = |there: [f32; 2], back: [f32; 2]| {
         let half = |sign: f32| [0, 1].map(|axis| 0.5 * (there[axis] + sign * back[axis]));
         let long = |[x, y]: [f32; 2]| x.hypot(y);
         let (pushed, lost) = (half(-1.0), half(1.0));
-        // Movement in the same direction for both pushes is not caused by the motor. A stick at its rim can
-        // only move in one direction.
+        // Opposite pushes of a motor cause opposite movements, so a common movement comes from a hand.
+        // Accepts a stick at its rim, which can move in only one of the directions.
         let is_at_rim = long(there).min(long(back)) < 2.0 * NEAR;
         (is_at_rim || long(lost) < 0.5 * long(pushed)).then_some(pushed)
     };
@@ -127,8 +127,8 @@ mod tests {
     use crate::{Ability, Command, ForceController, Output, State, StickMode, Watchdog};
     use std::time::Duration;
 
-    /// Measures a light stick with a soft spring through all of `ForceController`. `built` maps motor forces to stick
-    /// forces; `hand` is added to the stick position.
+    /// Measures a simulated light stick with a soft spring, through all of `ForceController`. `built` maps
+    /// motor forces to stick forces; `hand` is added to the stick position.
     fn measure(
         built: impl Fn([f32; 2]) -> [f32; 2],
         hand: impl Fn(f32) -> [f32; 2],
@@ -175,7 +175,7 @@ mod tests {
                 };
                 let found = measure(built, |_| [0.0; 2]).expect("the stick moves freely");
                 assert_eq!((found.swap, found.invert), (swap, invert));
-                // The calibration makes the stick move in the direction of the force.
+                // After calibration, the stick must move in the direction of the force.
                 let push = [0.3, -0.7];
                 assert_eq!(built(found.apply(push)), push);
             }
@@ -190,7 +190,7 @@ mod tests {
             let found = loop {
                 match measurement.step(at, 0.016) {
                     Measured::Pushing([x, y]) => {
-                        // The stick moves with the push and stays there.
+                        // The stick moves with the push and stays where it was pushed.
                         at = [at[0] - 0.1 * y, at[1] + 0.1 * x].map(|k: f32| k.clamp(-1.0, 1.0));
                     }
                     Measured::Known(found) => break found.expect("the stick moves freely"),
@@ -200,7 +200,7 @@ mod tests {
         }
     }
 
-    /// A hand that stirs, or that waits for each push and then moves independently.
+    /// Tests a hand that moves all the time, and one that waits for each push and then moves as it likes.
     #[test]
     fn measurement_fails_when_a_hand_moves_the_stick() {
         for rate in 1..60 {

@@ -9,10 +9,11 @@ pub const MAX_STIFFNESS: f32 = 0.4;
 /// Strength and speed limits of the forces of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Overall strength, 0 to 1, default 0.8 (the slider in the menu). At 0 nothing is sent.
+    /// Overall strength of the forces, 0 to 1, default 0.8: the slider in the menu. At 0 no force is sent.
     pub strength: f32,
-    /// Simulated force that corresponds to a full force before the soft clip [N], 1 to 10,000, default 150. A
-    /// smaller value makes forces stronger and clips them earlier.
+    /// Contact force in the simulation that gives one full force before the soft clip [N], 1 to 10,000,
+    /// default
+    /// 150. A smaller value makes forces stronger and clips them earlier.
     pub full: f32,
     /// Stiffness of the coupling [full forces per stick travel from the middle to the rim], 0 to
     /// [`MAX_STIFFNESS`], which is the default. A smaller value makes all contacts softer.
@@ -31,11 +32,11 @@ pub struct Settings {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct Calibration {
-    /// The x motor pushes along y, and the y motor along x.
+    /// Whether the x motor pushes the stick along y, and the y motor along x.
     pub swap: bool,
-    /// The motor pushes in the opposite direction. Applied after `swap`.
+    /// Whether the motor pushes in the opposite direction, per motor. Applied after `swap`.
     pub invert: [bool; 2],
-    /// Gain per motor, 0 to 1, to weaken the stronger one. Applied after `swap`.
+    /// Gain per motor, 0 to 1. Weakens the stronger motor of an uneven pair. Applied after `swap`.
     pub gain: [f32; 2],
 }
 
@@ -59,16 +60,16 @@ impl Default for Calibration {
 }
 
 impl Settings {
-    /// Range of `strength`, `clamp` and the gains.
+    /// Range of `strength`, `clamp` and the gains of the calibration.
     pub const SHARE: RangeInclusive<f32> = 0.0..=1.0;
     /// Range of `full` [N].
     pub const FULL: RangeInclusive<f32> = 1.0..=10_000.0;
-    /// Range of `stiffness`.
+    /// Range of `stiffness` [full forces per stick travel from the middle to the rim].
     pub const STIFFNESS: RangeInclusive<f32> = 0.0..=MAX_STIFFNESS;
     /// Range of `slew` [full forces/s].
     pub const SLEW: RangeInclusive<f32> = 10.0..=100.0;
 
-    /// Clamps all values to their ranges. NaN becomes the value with the weakest effect.
+    /// Clamps all settings to their ranges. NaN becomes the value that gives the weakest force.
     pub fn bounded(self) -> Self {
         Self {
             strength: within(self.strength, Self::SHARE, 0.0),

@@ -1,14 +1,14 @@
-//! Interface of a device.
+//! Interface of a force-feedback device, and stand-ins for tests.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use web_time::Instant;
 
-/// Duration of an output unless it is repeated. Ends the forces of a process that hangs: kernels stop forces
-/// only when the process dies.
+/// Time after which a device ends an output that is not repeated. Without this limit, a force would last
+/// while the process hangs, because kernels stop forces only when the process dies.
 pub const OUTPUT_DURATION: Duration = Duration::from_millis(500);
 
-/// Capability of a device.
+/// Kind of feedback that a device supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ability {
     /// Pushes the stick along two axes.
@@ -38,22 +38,23 @@ pub enum Output {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gone;
 
-/// Device. All methods are called on one thread, 125 to 250 times a second, and must not block.
+/// Device that plays forces. All methods are called on one thread, 125 to 250 times a second, and must not
+/// block.
 pub trait Sink: Send {
-    /// Returns the capability. It may improve once a driver is ready.
+    /// Returns the kind of feedback that the device supports. It may improve once a driver is ready.
     fn ability(&self) -> Ability;
 
     /// Returns the current stick position: x to the right, y away from the player, each −1 to 1.
     ///
     /// # Errors
-    /// [`Gone`] if the device was unplugged; it then plays nothing any more.
+    /// [`Gone`] if the device was unplugged; an unplugged device plays no further output.
     fn stick_position(&mut self) -> Result<[f32; 2], Gone>;
 
-    /// Plays an output at once for [`OUTPUT_DURATION`], instead of the previous one. Repeating the same output
-    /// restarts its duration.
+    /// Plays an output at once for [`OUTPUT_DURATION`], instead of the previous one. Repeating the same
+    /// output restarts its duration.
     ///
     /// # Errors
-    /// [`Gone`] if the device was unplugged; it then plays nothing any more.
+    /// [`Gone`] if the device was unplugged; an unplugged device plays no further output.
     fn play(&mut self, output: Output) -> Result<(), Gone>;
 }
 
@@ -75,7 +76,7 @@ impl Sink for Nothing {
     }
 }
 
-/// Device that records its outputs. Clones share the recording.
+/// Stand-in for a device that records its outputs. Clones share one recording.
 #[derive(Clone, Debug)]
 pub struct Recording(Arc<Mutex<Tape>>);
 
@@ -84,7 +85,7 @@ pub struct Recording(Arc<Mutex<Tape>>);
 pub struct Played {
     /// Time since the recording was created.
     pub at: Duration,
-    /// Output.
+    /// Output that was played.
     pub output: Output,
 }
 
@@ -118,7 +119,7 @@ impl Recording {
         self.tape(|tape| tape.aim = aim);
     }
 
-    /// Returns all outputs since the last call.
+    /// Returns all outputs that were played since the last call of `take`.
     pub fn take(&self) -> Vec<Played> {
         self.tape(|tape| std::mem::take(&mut tape.played))
     }
@@ -147,7 +148,7 @@ impl Sink for Recording {
 }
 
 impl Output {
-    /// Returns the zero output for a capability.
+    /// Returns the zero output for a device with this capability.
     pub fn zero(ability: Ability) -> Self {
         match ability {
             Ability::Force | Ability::Nothing => Self::Force([0.0; 2]),
@@ -158,7 +159,7 @@ impl Output {
         }
     }
 
-    /// Returns both values in driver units, −32767 to 32767.
+    /// Returns both components of the output in driver units, −32767 to 32767.
     pub fn levels(&self) -> [i16; 2] {
         let both = match *self {
             Self::Force(both) => both,
@@ -168,7 +169,7 @@ impl Output {
         both.map(|k| (k.clamp(-1.0, 1.0) * 32767.0).round() as i16)
     }
 
-    /// Returns whether the output is zero in driver units.
+    /// Returns whether the output rounds to zero in driver units.
     pub fn is_zero(&self) -> bool {
         self.levels() == [0; 2]
     }

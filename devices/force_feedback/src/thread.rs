@@ -11,7 +11,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 use web_time::Instant;
 
-/// Allowed update rates [Hz]. Steps are felt at lower rates; most devices accept no higher ones.
+/// Allowed update rates of devices [Hz]. Below 125 Hz players feel steps; most devices accept at most 250 Hz.
 pub const RATES: RangeInclusive<u32> = 125..=250;
 /// Interval at which an unchanged output is repeated, well below [`OUTPUT_DURATION`](crate::OUTPUT_DURATION).
 const AGAIN: Duration = Duration::from_millis(200);
@@ -22,7 +22,7 @@ const AGAIN: Duration = Duration::from_millis(200);
 pub struct ForceThread {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
-    /// Sinks if there is no thread; otherwise empty.
+    /// Sinks with their state if there is no thread; empty if a thread owns them.
     outlets: Vec<Outlet>,
 }
 
@@ -33,12 +33,12 @@ pub struct Line {
     key: u64,
 }
 
-/// State of a connection.
+/// State of a device and of its connection to the game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
     /// Capability of the device.
     pub ability: Ability,
-    /// Current output.
+    /// Output that the device plays now.
     pub output: Output,
     /// Force before the safety chain [N].
     pub newtons: [f32; 2],
@@ -52,14 +52,15 @@ struct Shared {
     news: Condvar,
 }
 
-/// Data shared by the game and the thread, locked only for copying. Holds the latest values and no queue.
+/// Data shared by the game and the thread. The lock is held only for copying. Holds the latest values, no
+/// queue.
 #[derive(Default)]
 struct SharedState {
     watchdog: Watchdog,
     posts: BTreeMap<u64, Post>,
     arrivals: Vec<Outlet>,
     next_key: u64,
-    /// Set to wake the thread before its next update is due.
+    /// Whether the thread must update the devices now, before its next update is due.
     is_urgent: bool,
     is_closing: bool,
     has_ended: bool,
@@ -74,7 +75,7 @@ struct Post {
     report: Report,
 }
 
-/// Device, owned by the thread.
+/// Device and its force calculation, owned by the thread.
 struct Outlet {
     key: u64,
     sink: Box<dyn Sink>,
@@ -99,7 +100,8 @@ impl ForceThread {
         Ok(force)
     }
 
-    /// Creates an owner without a thread, as in a browser: only [`ForceThread::update`] updates the devices.
+    /// Creates an owner without a thread, for platforms such as browsers. Then only [`ForceThread::update`]
+    /// updates the devices.
     pub fn without_thread() -> Self {
         Self {
             shared: Arc::new(Shared {
@@ -112,7 +114,7 @@ impl ForceThread {
         }
     }
 
-    /// Updates all devices once. Does nothing if there is a thread, which then updates them.
+    /// Updates all devices once. Does nothing if there is a thread, because the thread updates the devices.
     pub fn update(&mut self) {
         if self.thread.is_none() {
             self.shared.update(self.shared.desk(), &mut self.outlets);
@@ -184,7 +186,8 @@ impl Drop for ForceThread {
         desk.is_closing = true;
         self.shared.hurry(desk);
         if let Some(thread) = self.thread.take() {
-            // If the thread panicked, the message was printed and the sinks are at zero.
+            // An error means that the thread panicked. The panic was already printed and has set all sinks to
+            // zero.
             let _ = thread.join();
         }
     }
@@ -203,7 +206,8 @@ impl Line {
         self.post(|post| post.tear = post.tear.max(size));
     }
 
-    /// Stops this device until the next [`Line::set_state`]. Repeated calls are cheap.
+    /// Stops this device until the next [`Line::set_state`]. Repeated calls are cheap, so callers need not
+    /// check first.
     pub fn stop(&self, why: Stop) {
         let mail = self.shared.mail(Err(why));
         let before = self.post(|post| std::mem::replace(&mut post.mail, mail));
@@ -217,7 +221,7 @@ impl Line {
         self.post(|post| post.settings = settings);
     }
 
-    /// Returns the state as of the last update.
+    /// Returns the state of the device after its last update.
     pub fn report(&self) -> Report {
         let has_ended = self.shared.desk().has_ended;
         let mut report = self.post(|post| Report {
@@ -276,7 +280,7 @@ impl Shared {
                 return;
             }
             let now = self.update(desk, &mut outlets);
-            // Missed updates are not made up for.
+            // Skips missed updates instead of making up for them.
             next = (next + period).max(now);
         }
     }
@@ -286,7 +290,7 @@ impl Shared {
         desk.is_urgent = false;
         outlets.append(&mut desk.arrivals);
         let watchdog = desk.watchdog;
-        // A removed post gives `None`; its outlet is dropped below, outside the lock.
+        // A device without a post was removed by the game. Its outlet is dropped below, outside the lock.
         let posts: Vec<Option<Post>> = outlets
             .iter()
             .map(|outlet| {
@@ -317,7 +321,7 @@ impl Shared {
     }
 }
 
-/// Guard that tells all lines on drop that the thread has ended, also after a panic.
+/// Guard that marks the thread as ended when dropped, also after a panic. All lines then report the end.
 struct End<'a>(&'a Shared);
 
 impl Drop for End<'_> {
@@ -349,7 +353,7 @@ impl Outlet {
         }
     }
 
-    /// Sends an output to the device if the output has changed, or if it is nonzero and due for repetition.
+    /// Sends an output to the device if the output has changed. Also repeats a nonzero output each `AGAIN`.
     fn tell(&mut self, felt: StepOutput, now: Duration) -> StepOutput {
         let StepOutput { output, .. } = felt;
         let is_news = output.levels() != self.told.levels();

@@ -4,8 +4,8 @@ use crate::State;
 use std::fmt;
 use std::time::Duration;
 
-/// Maximum age of a state that gives a force. The force must end within 100 ms of the last state; 84 ms leave
-/// time for two updates at the slowest of [`RATES`](crate::RATES).
+/// Maximum age of a state that gives a force. The force must end within 100 ms of the last state. The 16 ms
+/// between both limits allow two updates at the slowest of [`RATES`](crate::RATES).
 pub const MAX_STATE_AGE: Duration = Duration::from_millis(84);
 
 /// Reason to output no force.
@@ -31,7 +31,7 @@ pub enum Stop {
     Stale,
     /// Emergency stop; lasts until it is released.
     Emergency,
-    /// The thread has ended.
+    /// The thread that drives the devices has ended.
     Ended,
 }
 
@@ -53,16 +53,17 @@ impl fmt::Display for Stop {
     }
 }
 
-/// Last command of the game for a device, with its time on a shared clock.
+/// Last command of the game for a device, with the time at which it was given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command {
-    /// State, or a reason to output no force.
+    /// State from which to compute the force, or a reason to output no force.
     pub wish: Result<State, Stop>,
-    /// Time of the command.
+    /// Time of the command on the clock that all devices share.
     pub at: Duration,
 }
 
-/// Blocks forces during an emergency stop, after other stops, and when the last state is too old.
+/// Check before each step. Blocks forces during an emergency stop, after other stops, and when the last state
+/// is too old.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watchdog {
     emergency: bool,
@@ -88,10 +89,10 @@ impl Watchdog {
         self.emergency = false;
     }
 
-    /// Returns the state from which the force at the time `now` is computed.
+    /// Returns the state from which to compute the force at the time `now`.
     ///
     /// # Errors
-    /// Returns the reason to output no force.
+    /// The reason to output no force.
     pub fn pass(&self, mail: &Command, now: Duration) -> Result<State, Stop> {
         if self.emergency {
             return Err(Stop::Emergency);

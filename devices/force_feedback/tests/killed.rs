@@ -1,4 +1,4 @@
-//! A process killed while it pushes: its last output ends by itself.
+//! Test that kills a process while it pushes the stick: the last output of the process ends by itself.
 
 use force_feedback::{
     Ability, ForceThread, Gone, OUTPUT_DURATION, Output, Settings, Sink, State, StickMode,
@@ -12,7 +12,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 const PATH: &str = "FORCE_FEEDBACK_TEST_PATH";
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Device that writes a line for each output to a file: start and end [ms since 1970] and strength.
+/// Device that writes a line for each output to a file: start and end time [ms since 1970], and strength.
 struct Device(File);
 
 impl Sink for Device {
@@ -43,7 +43,7 @@ fn now() -> Duration {
         .expect("the time is after 1970")
 }
 
-/// Returns the outputs in the file: start, end [ms since 1970] and strength.
+/// Returns the outputs in the file of [`Device`]: start and end time [ms since 1970], and strength.
 fn told(path: &std::path::Path) -> Vec<[i128; 3]> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     // The last line may be half written.
@@ -67,7 +67,7 @@ fn push_until_killed() {
     let force = ForceThread::start(250).expect("a thread can be started");
     let line = force.add(Box::new(Device(file)), Settings::default());
     let start = std::time::Instant::now();
-    // The loop has an end, in case the parent is gone and cannot kill this process.
+    // Ends the loop after a while, in case the parent has ended and cannot kill this process.
     while start.elapsed() < PATIENCE {
         line.set_state(State {
             contact: [-300.0, 0.0],
@@ -91,7 +91,7 @@ fn force_of_a_killed_process_ends_within_half_a_second() {
         assert!(now() - start < PATIENCE, "the child never pushed");
         std::thread::sleep(Duration::from_millis(5));
     }
-    // SIGKILL: no handler runs, and nothing is dropped.
+    // `kill` sends SIGKILL, so no handler runs, and nothing is dropped.
     child.kill().expect("the child runs");
     child.wait().expect("the child can be waited for");
     let killed = now().as_millis() as i128;

@@ -1,4 +1,4 @@
-//! All ways in which a force must end, on a simulated clock and on a real thread.
+//! Tests of every reason for which a force must end, on a simulated clock and on a real thread.
 
 use force_feedback::{
     Ability, Command, ForceController, ForceThread, Gone, Line, Nothing, OUTPUT_DURATION, Output,
@@ -19,7 +19,7 @@ const REASONS: [Stop; 6] = [
     Stop::Unplugged,
 ];
 const MS: Duration = Duration::from_millis(1);
-/// Timeout on a busy machine for everything without a tighter limit.
+/// Timeout of all waits without a limit of their own. Long, because the machine may be busy.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Simulated device in a hand that leans into an obstacle, with updates at a given rate and states at 60 Hz.
@@ -69,7 +69,7 @@ impl Simulated {
 fn force_ramps_up_after_a_delayed_update() {
     let mut simulated = Simulated::pushed(250);
     simulated.now += 1500 * MS;
-    // The simulation was delayed too and resumes first: the state is not stale.
+    // The simulation was delayed together with the devices and resumes first, so the state is not stale.
     simulated.say(Ok(PUSH));
     for _ in 0..5 {
         let felt = simulated.step();
@@ -147,7 +147,7 @@ fn emergency_stop_lasts_until_released() {
     assert_eq!(simulated.step().silent, None);
 }
 
-/// Starts a thread that pushes a recording, and waits until there is a force.
+/// Starts a thread that drives a [`Recording`], and waits until the device outputs a force.
 fn pushed() -> (ForceThread, Line, Recording) {
     let force = ForceThread::start(250).expect("a thread can be started");
     let recording = Recording::default();
@@ -157,7 +157,7 @@ fn pushed() -> (ForceThread, Line, Recording) {
     (force, line, recording)
 }
 
-/// Reports a contact for a while, and at least until there is a force.
+/// Reports a contact for the duration `time`, and longer if the device outputs no force yet.
 fn push(line: &Line, time: Duration) {
     let start = Instant::now();
     while start.elapsed() < time || line.report().output.is_zero() {
@@ -167,7 +167,7 @@ fn push(line: &Line, time: Duration) {
     }
 }
 
-/// Waits for a zero output. Returns the outputs until then, and the time since `since`.
+/// Waits for a zero output. Returns the outputs up to the zero output, and the time from `since` to it.
 fn zero(recording: &Recording, since: Instant) -> (Vec<Played>, Duration) {
     let mut played = recording.take();
     while played.last().is_none_or(|last| !last.output.is_zero()) {
@@ -178,7 +178,7 @@ fn zero(recording: &Recording, since: Instant) -> (Vec<Played>, Duration) {
     (played, since.elapsed())
 }
 
-/// Checks that the quickest of several tries takes at most `most`: a busy machine only adds time.
+/// Checks that the fastest of several tries takes at most `most`. A busy machine can only slow a try down.
 fn check_quick(most: Duration, what: &str, mut once: impl FnMut() -> Duration) {
     let mut quickest = Duration::MAX;
     for _try in 0..20 {
@@ -262,7 +262,7 @@ fn thread_stops_when_the_game_panics() {
 fn thread_stops_when_the_game_stalls() {
     check_quick(100 * MS, "the game stalled", || {
         let (_force, line, recording) = pushed();
-        // The thread keeps the line and reports nothing more.
+        // Another thread keeps the line without reporting states, like a simulation that hangs.
         let (stall, stalled) = std::sync::mpsc::channel::<()>();
         line.set_state(PUSH);
         let start = Instant::now();
@@ -292,7 +292,7 @@ fn unplugged_device_gets_no_output() {
     assert!(recording.take().is_empty());
 }
 
-/// A device with a panicking driver ends the thread; all other devices must be stopped.
+/// Tests that all other devices are stopped when one device's driver panics, which ends the thread.
 #[test]
 fn panicking_driver_stops_all_devices() {
     struct Bad(bool);
@@ -327,7 +327,7 @@ fn unchanged_output_is_repeated_before_it_ends() {
     let recording = Recording::default();
     recording.lean(Ok([1.0, 0.0]));
     let settings = Settings {
-        // Clamped, so that the force is constant after the ramp-up.
+        // A low limit, so that the force is constant after the ramp-up.
         clamp: 0.05,
         ..Settings::default()
     };

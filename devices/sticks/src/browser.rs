@@ -50,7 +50,8 @@ extern "C" {
     pub fn reset(this: &Actuator) -> Result<JsValue, JsValue>;
 }
 
-/// Buttons of the standard layout in the order of the API. The API treats the triggers, 6 and 7, as buttons.
+/// Buttons of the standard layout in the order of the Gamepad API, which treats the triggers, 6 and 7, as
+/// buttons. `None` stands for a trigger.
 const STANDARD: [Option<PadButton>; 17] = {
     use PadButton::*;
     [
@@ -78,8 +79,8 @@ const TRIGGERS: [usize; 2] = [6, 7];
 /// Reader of the browser's pads.
 pub struct Owner {
     latest: Latest,
-    /// Devices of the last snapshot with their indices in the browser's list, and the number of devices ever
-    /// seen.
+    /// Devices of the last snapshot with their indices in the browser's list of pads, and the number of
+    /// devices seen since the start.
     places: Mutex<(Vec<(DeviceId, u32)>, u32)>,
 }
 
@@ -118,7 +119,7 @@ impl Owner {
     }
 }
 
-/// Returns the connected pads; none if the page lacks permission.
+/// Returns the connected pads, or no pads if the page may not read them.
 pub fn pads() -> Vec<Gamepad> {
     let list = get_gamepads().unwrap_or_default();
     let there = list.iter().filter(|pad| !pad.is_falsy());
@@ -164,7 +165,7 @@ fn device(id: DeviceId, pad: &Gamepad, before: Option<&Device>) -> Device {
     }
 }
 
-/// Updates a button and counts a new press.
+/// Returns the button with its new state, and counts a press if it has just gone down.
 fn counted(mut button: Button, is_down: bool) -> Button {
     if is_down && !button.down {
         button.press();
@@ -173,8 +174,8 @@ fn counted(mut button: Button, is_down: bool) -> Button {
     button
 }
 
-/// Parses the browser's name of a pad. Chromium writes `Name (STANDARD GAMEPAD Vendor: 045e Product: 02ea)`,
-/// Firefox `045e-02ea-Name`.
+/// Parses the text by which the browser identifies a pad. Chromium writes `Name (STANDARD GAMEPAD Vendor:
+/// 045e Product: 02ea)`, Firefox `045e-02ea-Name`.
 fn about(id: &str) -> DeviceInfo {
     let chromium = || -> Option<_> {
         let (name, rest) = id.split_once(" (")?;
@@ -201,8 +202,8 @@ fn about(id: &str) -> DeviceInfo {
     } else {
         Labels::Unknown
     };
-    // Like the first half of SDL's GUID. A pad without vendor and product numbers uses the beginning of its
-    // name.
+    // Builds a GUID like the first half of SDL's from the vendor and product numbers. Without these numbers,
+    // uses the beginning of the pad's name.
     let known = match vendor {
         "" => name.bytes().map(|byte| format!("{byte:02x}")).collect(),
         _ => format!("0000{vendor}0000{product}"),

@@ -13,7 +13,7 @@ pub struct Snapshot {
     pub devices: Vec<Device>,
 }
 
-/// State of one device, with press counters since it was plugged in.
+/// State of one device. Its buttons count their presses since the device was plugged in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Device {
     pub id: DeviceId,
@@ -22,11 +22,11 @@ pub struct Device {
     /// increasing to the right, and y, increasing towards the player. A lever may read 0 until it is first
     /// moved.
     pub axes: Vec<f32>,
-    /// All buttons, in the numbering of the device.
+    /// State of all buttons, in the numbering of the device.
     pub buttons: Vec<Button>,
     pub hats: Vec<Hat>,
-    /// State in the standard layout. `Some` if SDL knows the layout of this device, which is then called a
-    /// pad.
+    /// State in the standard layout. `Some` if SDL knows the layout of this device. Such a device is called a
+    /// pad here.
     pub pad: Option<Pad>,
 }
 
@@ -35,8 +35,8 @@ pub struct Device {
 pub struct DeviceInfo {
     /// Human-readable name.
     pub name: String,
-    /// Id of the model, not of the single device, as 32 hexadecimal digits: a key for storing mappings or
-    /// calibrations. Differs between platforms.
+    /// Id of the device model as 32 hexadecimal digits, equal for all devices of a model: a key for storing
+    /// mappings or calibrations. Differs between platforms.
     pub guid: String,
     /// Labels printed on the buttons of a pad.
     pub labels: Labels,
@@ -48,23 +48,23 @@ pub enum Labels {
     /// Unknown labels.
     #[default]
     Unknown,
-    /// A at the bottom, as on Xbox pads and most others.
+    /// Letters, with A at the bottom, as on Xbox pads and most others.
     Letters,
-    /// B at the bottom, as on Nintendo pads.
+    /// Letters, with B at the bottom, as on Nintendo pads.
     Mirrored,
-    /// A cross at the bottom, as on PlayStation pads.
+    /// Shapes, with a cross at the bottom, as on PlayStation pads.
     Shapes,
 }
 
-/// Button or other control that can be pressed.
+/// State of a button or of another control that can be pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Button {
     pub down: bool,
-    /// Number of presses since the device was plugged in. Wraps around.
+    /// Number of presses since the device was plugged in. Wraps around at the maximum.
     pub presses: u32,
 }
 
-/// Direction of a hat or of focus movement.
+/// Direction of a hat, or of a move of the focus in a menu.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Direction {
     Up,
@@ -73,7 +73,7 @@ pub enum Direction {
     Left,
 }
 
-/// Thumb hat with eight directions, as four buttons of which two adjacent ones may be down.
+/// State of a thumb hat with eight directions: four buttons, of which two adjacent ones may be down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hat {
     buttons: [Button; Direction::ALL.len()],
@@ -84,15 +84,15 @@ pub struct Hat {
 pub struct Pad {
     /// Left stick: x to the right and y up, each from −1 to 1. Diagonals may be longer than 1.
     pub left: [f32; 2],
-    /// Right stick, as `left`.
+    /// Right stick: x to the right and y up, each from −1 to 1. Diagonals may be longer than 1.
     pub right: [f32; 2],
     /// Left and right trigger, from 0 at rest to 1.
     pub triggers: [f32; 2],
     buttons: [Button; PadButton::ALL.len()],
 }
 
-/// Button of the standard layout. The four under the right thumb are named by position, since their letters
-/// differ between makers.
+/// Button of the standard layout. The four buttons under the right thumb are named by their position, because
+/// their labels differ between makers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PadButton {
     South,
@@ -114,7 +114,7 @@ pub enum PadButton {
     Right,
     /// Additional button, such as share, capture or microphone.
     Misc,
-    /// Upper or primary right paddle on the back; the next three are paddles too.
+    /// Upper or primary right paddle on the back of the pad. The next three variants are the other paddles.
     RightPaddle,
     LeftPaddle,
     LowerRightPaddle,
@@ -151,7 +151,7 @@ impl Snapshot {
         self.devices.iter().find(|device| device.id == id)
     }
 
-    /// Returns the changes since an earlier snapshot: first the disconnected devices, then per device its
+    /// Returns the changes since the snapshot `before`: first the disconnections, then for each device its
     /// connection and its presses.
     pub fn since(&self, before: &Snapshot) -> Vec<Change> {
         let left = before
@@ -178,7 +178,7 @@ impl Snapshot {
 }
 
 impl Device {
-    /// Creates a device with these numbers of axes, buttons and hats, all at rest.
+    /// Creates a device with the given numbers of axes, buttons and hats, all at rest.
     pub fn at_rest(
         id: DeviceId,
         about: DeviceInfo,
@@ -196,8 +196,8 @@ impl Device {
         }
     }
 
-    /// Returns the position of the main stick: the left one of a pad, otherwise the first two axes. x to the
-    /// right, y up (away from the player), each from −1 to 1.
+    /// Returns the position of the main stick: of the left stick on a pad, otherwise of the first two axes. x
+    /// to the right, y up (away from the player), each from −1 to 1.
     pub fn aim(&self) -> [f32; 2] {
         match (&self.pad, self.axes.as_slice()) {
             (Some(pad), _) => pad.left,
@@ -206,7 +206,7 @@ impl Device {
         }
     }
 
-    /// Returns the d-pad of a pad, or all hats combined.
+    /// Returns the button for a direction: from the d-pad of a pad, otherwise from all hats combined.
     pub fn hat(&self, direction: Direction) -> Button {
         if let Some(pad) = &self.pad {
             return pad.button(direction.into());
@@ -220,7 +220,7 @@ impl Device {
         all
     }
 
-    /// Returns the state of a control; at rest if the device has no such control.
+    /// Returns the state of a control. If the device has no such control, returns a control at rest.
     pub fn control(&self, control: Control) -> Button {
         let button = match control {
             Control::Button(index) => self.buttons.get(index).copied(),
@@ -230,7 +230,7 @@ impl Device {
         button.unwrap_or_default()
     }
 
-    /// Returns all controls: on pads those of the standard layout, on other devices the buttons and hats.
+    /// Returns all controls with their states: the standard layout of a pad, otherwise all buttons and hats.
     pub fn controls(&self) -> impl Iterator<Item = (Control, Button)> {
         let is_pad = self.pad.is_some();
         let pad = PadButton::ALL
@@ -247,12 +247,12 @@ impl Device {
 }
 
 impl Button {
-    /// Returns the number of presses since an earlier state.
+    /// Returns the number of presses since the state `before` of this button.
     pub fn presses_since(self, before: Button) -> u32 {
         self.presses.wrapping_sub(before.presses)
     }
 
-    /// Records a press.
+    /// Records a press: the button is down and counts one press more.
     pub fn press(&mut self) {
         self.down = true;
         self.presses = self.presses.wrapping_add(1);

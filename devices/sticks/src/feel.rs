@@ -6,12 +6,12 @@ use crate::{Button, Device, DeviceId, Direction};
 #[derive(Clone, Debug, Default)]
 pub struct Repeat {
     held: Option<Direction>,
-    /// Time until the next repetition [s].
+    /// Time until the next repetition of the held direction [s].
     left: f32,
 }
 
-/// Navigation of a menu with a device: one step per press of the d-pad or hat and per push of the stick, and
-/// further steps while it is held.
+/// Navigation of a menu with a device. Each press of the d-pad or hat, and each push of the stick, moves one
+/// step. A held direction repeats the step.
 #[derive(Clone, Debug, Default)]
 pub struct Navigator {
     device: Option<DeviceId>,
@@ -20,10 +20,11 @@ pub struct Navigator {
     repeat: Repeat,
 }
 
-/// Applies a radial dead zone in the middle, where a stick jitters or does not return to 0, and at the rim,
-/// which few sticks reach. Up to the length `inner` (usually 0.1 to 0.2) the result is 0. From `outer`
-/// (usually 0.95) on it has length 1. Between them the length grows linearly and the direction is kept; a
-/// dead zone per axis would make the stick snap to the axes. Non-finite input gives 0.
+/// Applies radial dead zones in the middle and at the rim of a stick. Up to the length `inner` (usually 0.1 to
+/// 0.2) the result is 0, because a stick jitters there or does not return to 0. From `outer` (usually 0.95) on
+/// the result has length 1, because few sticks reach their full length. Between the zones the length grows
+/// linearly, and the direction is kept. A dead zone per axis would make the stick snap to the axes. Non-finite
+/// input gives 0.
 pub fn radial_dead_zone(stick: [f32; 2], inner: f32, outer: f32) -> [f32; 2] {
     let length = (stick[0] * stick[0] + stick[1] * stick[1]).sqrt();
     if !length.is_finite() || length <= inner || length == 0.0 {
@@ -38,8 +39,9 @@ pub fn radial_dead_zone(stick: [f32; 2], inner: f32, outer: f32) -> [f32; 2] {
 }
 
 impl Direction {
-    /// Returns the direction of a stick, given the previous direction. Starting a direction needs a larger
-    /// deflection than keeping it, so that neither a trembling hand nor a diagonal makes it flicker.
+    /// Returns the direction of a stick, given its previous direction `before`. Starting a direction needs a
+    /// larger deflection than keeping it. So neither a trembling hand nor a diagonal makes the direction
+    /// flicker.
     pub fn of(stick: [f32; 2], before: Option<Direction>) -> Option<Direction> {
         const BEGINS: f32 = 0.6;
         const ENDS: f32 = 0.4;
@@ -63,8 +65,9 @@ impl Repeat {
     /// Interval between repetitions [s].
     pub const INTERVAL: f32 = 0.12;
 
-    /// Returns whether to repeat now, `seconds` after the last call. The start of holding a direction is no
-    /// repetition. At most one repetition per call, so that a slow frame does not run through a menu.
+    /// Returns whether the held direction repeats now, `seconds` after the last call. The start of holding a
+    /// direction is not a repetition. A call gives at most one repetition, so that a slow frame does not run
+    /// through a menu.
     pub fn step(&mut self, held: Option<Direction>, seconds: f32) -> bool {
         if held.is_none() || held != self.held {
             self.held = held;
@@ -81,8 +84,8 @@ impl Repeat {
 }
 
 impl Navigator {
-    /// Returns the steps to take now, `seconds` after the last call. The first call with a device moves
-    /// nothing: the button press with which a player joins does not choose anything.
+    /// Returns the steps of the focus to take now, `seconds` after the last call. The first call with a
+    /// device returns no step, so that the button press with which a player joins chooses nothing.
     pub fn step(&mut self, device: &Device, seconds: f32) -> Vec<Direction> {
         let hat = Direction::ALL.map(|direction| device.hat(direction));
         if self.device != Some(device.id) {

@@ -1,4 +1,4 @@
-//! Feedback of pads in browsers, which support rumble only.
+//! Feedback of pads in browsers. Browsers support rumble only.
 
 use crate::latest::Latest;
 use crate::owner::{Actuator, Gamepad, pads};
@@ -16,7 +16,7 @@ pub struct Haptic {
 }
 
 impl Sticks {
-    /// Returns the sink of a device. A missing device or one without motors does nothing.
+    /// Returns the sink of a device. If the device is missing or has no motors, the sink plays nothing.
     pub fn haptic(&self, id: DeviceId) -> Haptic {
         let (place, latest) = (self.owner.place(id), self.latest.clone());
         Haptic { id, place, latest }
@@ -53,7 +53,7 @@ impl Sink for Haptic {
             return Ok(());
         };
         if output.is_zero() {
-            // In a browser without `reset` the effect ends by itself.
+            // `reset` ends the effect at once. A browser without `reset` lets the effect run out.
             return actuator.reset().map_or(Ok(()), forget);
         }
         let parameters = Object::new();
@@ -66,13 +66,14 @@ impl Sink for Haptic {
             // Setting a property of a new object cannot fail.
             let _ = Reflect::set(&parameters, &JsValue::from(name), &JsValue::from(number));
         }
-        // Not awaited: the promise resolves only when the effect ends or is replaced.
+        // Does not wait for the promise, which resolves only when the effect ends or is replaced.
         let played = actuator.play_effect("dual-rumble", &parameters);
         played.map_err(|_| Gone).and_then(forget)
     }
 }
 
-/// Ignores the result of a promise: pads that cannot rumble reject it later.
+/// Ignores the result of a promise: pads that cannot rumble reject the promise later, and nothing depends on
+/// it.
 fn forget(promise: JsValue) -> Result<(), Gone> {
     wasm_bindgen_futures::spawn_local(async move {
         let _ = JsFuture::from(Promise::resolve(&promise)).await;

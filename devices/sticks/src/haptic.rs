@@ -1,4 +1,4 @@
-//! Sink of a device; sends outputs to the thread that owns SDL.
+//! Force-feedback sink of a device. It sends outputs to the thread that owns SDL.
 
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, Weak};
@@ -11,9 +11,9 @@ use crate::latest::Latest;
 use crate::owner::{Hub, Order};
 use crate::{DeviceId, Sticks};
 
-/// Device as a sink of `force_feedback`. Dropping it releases the device, unless a newer sink of the device
-/// exists. A device may have two sinks only while one replaces the other. Only the latest output is sent; it
-/// replaces pending ones.
+/// Device as a sink of `force_feedback`. Dropping the sink releases the device, unless a newer sink of the
+/// device exists. A device may have two sinks only while one replaces the other. A new output replaces an
+/// output that was not sent yet.
 pub struct Haptic {
     id: DeviceId,
     latest: Latest,
@@ -22,8 +22,8 @@ pub struct Haptic {
 }
 
 impl Sticks {
-    /// Returns the sink of a device. Its ability is known some ms later. Until then the ability is
-    /// [`Ability::Nothing`], as it always is for a missing device.
+    /// Returns the sink of a device. The ability of the device becomes known a few ms later. Until then, and
+    /// always for a missing device, the ability is [`Ability::Nothing`].
     pub fn haptic(&self, id: DeviceId) -> Haptic {
         let haptic = Haptic {
             id,
@@ -74,7 +74,7 @@ impl Sink for Haptic {
         let (id, slot) = (self.id, self.slot.clone());
         self.order(move |hub| {
             let wish = lock(&slot).wish.take();
-            // After the process was stopped for a while, a pending output is obsolete.
+            // Drops an output that is too old, because the process was stopped for a while.
             let fresh = wish.filter(|(_, since)| since.elapsed() < OUTPUT_DURATION);
             if let (Some((output, _)), Some((open, held))) = (fresh, hub.held(id)) {
                 held.play(open, output);
@@ -87,7 +87,7 @@ impl Sink for Haptic {
 impl Drop for Haptic {
     fn drop(&mut self) {
         let (id, slot) = (self.id, self.slot.clone());
-        // If the thread has ended, the device is already released.
+        // Sending fails if the thread has ended, and then the device is already released.
         let _ = self.order(move |hub| {
             if let Some((open, held)) = hub.held(id) {
                 held.let_rest(open);

@@ -9,27 +9,27 @@ use crate::sdl::motors::Motors;
 use crate::sdl::{OpenDevice, Sdl};
 
 /// Interval at which a continuing force is started again. Some drivers, and Moza wheels, prolong a force only
-/// when it is started, not when its level changes. Starting it again at each change would be felt.
+/// when it is started again, not when its level changes. A restart at each change of level would be felt.
 const START_AGAIN: Duration = Duration::from_millis(150);
 
-/// USB vendor ids of devices that ignore effects of finite length. The thread that owns SDL ends their
+/// USB vendor ids of devices that ignore the length of effects, so the thread that owns SDL must end the
 /// effects. 0x346e is Moza; the behaviour of its bases is documented in the pull requests 11906 and 11915 of
 /// PCSX2.
 const ENDLESS: [u16; 1] = [0x346e];
 
 pub struct Slot {
     pub ability: Ability,
-    /// Pending output and its time.
+    /// Output to be sent next, and the time at which it was requested.
     pub wish: Option<(Output, Instant)>,
 }
 
-/// Feedback state of a device. The device is opened at the first request.
+/// Feedback state of a device. The motors of the device are opened at the first request.
 #[derive(Default)]
 pub struct Feedback<'sdl> {
     body: Option<Body<'sdl>>,
-    /// Slot of the latest sink.
+    /// Slot of the latest sink of the device.
     pub holder: Weak<Mutex<Slot>>,
-    /// Time of the last nonzero output.
+    /// Time of the last nonzero output; `None` while the output is zero.
     told: Option<Instant>,
     /// Time of the last start of a force.
     started: Option<Instant>,
@@ -59,7 +59,7 @@ impl<'sdl> Feedback<'sdl> {
         }
     }
 
-    /// Plays an output. Errors are ignored: the effect ends by itself, and nothing more can be done here.
+    /// Plays an output. Errors are ignored, because the effect ends without further calls.
     pub fn play(&mut self, open: &OpenDevice<'sdl>, output: Output) {
         let now = Instant::now();
         let is_over = |since: Option<Instant>| since.is_none_or(|since| now - since >= START_AGAIN);
@@ -81,7 +81,7 @@ impl<'sdl> Feedback<'sdl> {
         self.told = (!output.is_zero()).then_some(now);
     }
 
-    /// Ends an output that was not repeated in time, for devices that do not end it themselves.
+    /// Ends an output that was not repeated in time. Needed for devices that ignore the length of effects.
     pub fn expire(&mut self, open: &OpenDevice<'sdl>) {
         if self
             .told

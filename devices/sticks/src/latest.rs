@@ -1,10 +1,10 @@
-//! Latest snapshot, and errors of opening.
+//! Latest snapshot of the devices, and errors of opening them.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::Snapshot;
 
-/// Error of opening. The game can continue without devices.
+/// Error of opening the sticks. The game can continue without devices.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error("sticks and pads are already open: a process can open them only once at a time")]

@@ -81,7 +81,7 @@ pub use latest::Error;
 ))]
 pub use puppet::VirtualDevice;
 
-/// All connected sticks and pads. Dropping it closes them.
+/// All connected sticks and pads. Dropping this value closes them.
 pub struct Sticks {
     latest: Latest,
     #[allow(dead_code, reason = "held for its drop, which ends the thread")]
@@ -100,8 +100,8 @@ impl Sticks {
         })
     }
 
-    /// Returns the state of all devices. It is at most 2 ms old (100 ms while no device is connected), unless
-    /// a driver delays SDL. Cheap: takes a lock and counts a reference.
+    /// Returns the state of all devices. The state is at most 2 ms old (100 ms while no device is connected),
+    /// unless a driver delays SDL. The call is cheap: it takes a lock and counts a reference.
     pub fn snapshot(&self) -> Arc<Snapshot> {
         #[cfg(target_family = "wasm")]
         self.owner.look();

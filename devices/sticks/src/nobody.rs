@@ -1,4 +1,4 @@
-//! Module `owner` of builds without SDL: finds no device.
+//! Stand-in for the module `owner` in builds without SDL: finds no device.
 
 use crate::latest::{Error, Latest};
 

@@ -1,4 +1,4 @@
-//! The thread that owns SDL: it pumps events, keeps the device states, and publishes changed ones.
+//! The thread that owns SDL: it pumps events, updates the device states, and publishes changed ones.
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -14,17 +14,18 @@ use crate::latest::{Error, Latest};
 use crate::sdl::{ControlEvent, DeviceEvent, HatBits, OpenDevice, Sdl, SdlPermit};
 use crate::{Button, Device, DeviceId, Direction, Hat, Pad, PadButton, Snapshot};
 
-/// Maximum age of a snapshot while a device is connected. A larger value is felt as lag; at 1 ms the thread
-/// costs twice as much.
+/// Maximum age of a snapshot while a device is connected. Players feel a larger value as lag; at 1 ms the
+/// thread uses twice as much processor time.
 const PERIOD: Duration = Duration::from_millis(2);
-/// Maximum time to notice the first device. The delay is not felt, and the idle thread costs almost nothing.
+/// Interval of the updates while no device is connected. The delay is not felt, and the idle thread costs
+/// almost nothing.
 const IDLE_PERIOD: Duration = Duration::from_millis(100);
 /// Timeout for starting SDL. A broken device can block SDL forever; the game must continue without it.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Owner of the thread. Dropping it ends the thread and returns once the thread has ended.
+/// Owner of the SDL thread. Dropping it ends the thread and returns once the thread has ended.
 pub struct Owner {
-    /// `None` only during drop.
+    /// Sender of tasks to the thread; `None` only during drop.
     orders: Option<Arc<Sender<Order>>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -32,7 +33,7 @@ pub struct Owner {
 /// Task for the thread that owns SDL.
 pub type Order = Box<dyn FnOnce(&mut Hub<'_>) + Send>;
 
-/// State of the thread.
+/// State of the SDL thread.
 pub struct Hub<'sdl> {
     pub sdl: &'sdl Sdl,
     connected: Vec<Connected<'sdl>>,
@@ -55,7 +56,7 @@ impl Owner {
         Owner::start_with(turn, latest, |_, _| true)
     }
 
-    /// Starts the thread and waits until it has seen the connected devices.
+    /// Starts the SDL thread and waits until it has found the connected devices.
     pub fn start_with(
         turn: SdlPermit,
         latest: Latest,
@@ -75,7 +76,8 @@ impl Owner {
                             accepts,
                         };
                         hub.pump();
-                        // Fails only if the caller panicked; the inbox is then closed too.
+                        // Sending fails only if the caller panicked; the inbox is then closed too, and the
+                        // thread ends.
                         let _ = ready.send(Ok(()));
                         hub.run(&inbox);
                     }
@@ -92,8 +94,8 @@ impl Owner {
             Ok(Err(error)) => Err(Error::Sdl(error)),
             Err(RecvTimeoutError::Disconnected) => Err(Error::Sdl("SDL thread panicked".into())),
             Err(RecvTimeoutError::Timeout) => {
-                // Joining would block as long. If SDL starts later, the thread finds its inbox closed and
-                // ends.
+                // Does not join the thread, because SDL may block it forever. If SDL starts later, the thread
+                // finds its inbox closed and ends.
                 owner.thread = None;
                 let seconds = PATIENCE.as_secs();
                 let reason =
@@ -103,7 +105,8 @@ impl Owner {
         }
     }
 
-    /// Returns a sender for tasks. Weak, since the thread runs as long as a sender exists.
+    /// Returns a sender of tasks for the thread. The reference is weak, because the thread runs as long as a
+    /// sender exists.
     #[cfg(any(test, feature = "virtual", feature = "haptic"))]
     pub fn orders(&self) -> std::sync::Weak<Sender<Order>> {
         self.orders.as_ref().map(Arc::downgrade).unwrap_or_default()
@@ -114,14 +117,16 @@ impl Drop for Owner {
     fn drop(&mut self) {
         self.orders = None;
         if let Some(thread) = self.thread.take() {
-            // If the thread panicked, the message was printed and the devices are closed.
+            // An error means that the thread panicked. The panic was already printed, and the devices are
+            // closed.
             let _ = thread.join();
         }
     }
 }
 
 impl<'sdl> Hub<'sdl> {
-    /// Runs until the owner is dropped. Orders are handled at once and do not delay the pumping.
+    /// Runs until the owner is dropped. Tasks from the inbox are executed at once and do not delay the
+    /// pumping of events.
     fn run(&mut self, inbox: &Receiver<Order>) {
         let mut pumped = Instant::now();
         loop {
@@ -146,7 +151,7 @@ impl<'sdl> Hub<'sdl> {
         }
     }
 
-    /// Returns a device and its feedback state.
+    /// Returns a connected device and its feedback state.
     #[cfg(feature = "haptic")]
     pub fn held(
         &mut self,
@@ -251,8 +256,8 @@ impl Connected<'_> {
         }
     }
 
-    /// Reads buttons and axes, but counts no presses: these come from events, since a press may begin and end
-    /// between two reads.
+    /// Reads buttons and axes but counts no presses. Presses are counted from events, because a press may
+    /// begin and end between two reads.
     fn read(&mut self) {
         let Connected { open, device, .. } = self;
         for (number, axis) in device.axes.iter_mut().enumerate() {

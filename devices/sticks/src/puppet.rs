@@ -1,4 +1,4 @@
-//! Virtual devices for tests: they go through all of SDL, and only the driver is simulated.
+//! Virtual devices for tests. Their input goes through all of SDL; only the driver is simulated.
 
 use std::sync::Weak;
 use std::sync::mpsc::{self, Sender};
@@ -9,7 +9,7 @@ use crate::sdl::puppets::{PuppetAct, PuppetForm, Rumble};
 use crate::sdl::{HatBits, Sdl, SdlPermit};
 use crate::{DeviceId, Direction, Error, PadButton, Sticks};
 
-/// Virtual device. Dropping it unplugs the device. When a method returns, its change is in the snapshot.
+/// Virtual device. Dropping it unplugs the device. When a method returns, the snapshot contains its effect.
 #[must_use = "a puppet is unplugged when it is dropped"]
 pub struct VirtualDevice {
     id: DeviceId,
@@ -19,7 +19,7 @@ pub struct VirtualDevice {
 
 impl Sticks {
     /// Opens virtual devices only, so that tests do not depend on real devices. Waits until no other `Sticks`
-    /// is open in this process, so tests that call it run one after the other.
+    /// is open in this process, so that concurrent tests use SDL one after the other.
     pub fn open_for_puppets() -> Result<Sticks, Error> {
         let latest = Latest::default();
         Ok(Sticks {
@@ -33,7 +33,7 @@ impl Sticks {
         self.plug_in(name, PuppetForm::Pad)
     }
 
-    /// Plugs in a flight stick with these numbers of axes, buttons and hats.
+    /// Plugs in a flight stick with the given numbers of axes, buttons and hats.
     pub fn plug_in_stick(
         &self,
         name: &str,
@@ -68,9 +68,9 @@ impl VirtualDevice {
         self.id
     }
 
-    /// Moves an axis, −1 to 1, in the numbering of the device. On pads 0 and 1 are the left stick, 2 and 3
-    /// the right one (y increases towards the player), 4 and 5 the triggers (−1 at rest). Returns whether the
-    /// axis exists.
+    /// Moves the axis with this number to a value from −1 to 1. Returns whether the axis exists. On pads,
+    /// axes 0 and 1 are the left stick, 2 and 3 the right one, with y towards the player. Axes 4 and 5 are
+    /// the triggers, with −1 at rest.
     pub fn axis(&self, axis: usize, value: f32) -> bool {
         self.act(PuppetAct::Axis(axis, (value * 32767.0) as i16))
     }
@@ -80,7 +80,7 @@ impl VirtualDevice {
         self.act(PuppetAct::Button(button, down))
     }
 
-    /// Presses or releases a pad button, as `button`.
+    /// Presses or releases a pad button. Returns whether the button exists.
     pub fn pad_button(&self, button: PadButton, down: bool) -> bool {
         self.button(button as usize, down)
     }
@@ -91,7 +91,7 @@ impl VirtualDevice {
         self.act(PuppetAct::Hat(hat, HatBits::of(directions)))
     }
 
-    /// Returns the strength of the slow and the fast motor, 0 to 65535.
+    /// Returns the current rumble of the slow and the fast motor, 0 to 65535.
     pub fn rumble(&self) -> [u16; 2] {
         self.rumble.get()
     }
@@ -108,7 +108,7 @@ impl VirtualDevice {
 impl Drop for VirtualDevice {
     fn drop(&mut self) {
         let id = self.id;
-        // If the thread has ended, the device is already unplugged.
+        // The call fails if the thread has ended, and then the device is already unplugged.
         let _ = done(&self.owner, move |hub| hub.sdl.unplug(id));
     }
 }

@@ -55,10 +55,10 @@ use sdl3_sys::joystick::{
 
 use crate::{DeviceId, DeviceInfo, Direction, Labels, PadButton};
 
-/// Permission to run SDL, which exists once per process.
+/// Permission to run SDL. Only one exists in a process, so SDL is never started twice at a time.
 pub struct SdlPermit(());
 
-/// SDL while it runs. Bound to the thread that started it; used for devices only.
+/// SDL while it runs. Stays on the thread that started it.
 pub struct Sdl {
     _turn: SdlPermit,
     /// Whether force feedback is available.
@@ -82,26 +82,27 @@ pub enum DeviceEvent {
     Moved(ControlEvent),
 }
 
-/// Changed part of a device.
+/// Control of a device that may have changed.
 #[derive(Clone, Copy, Debug)]
 pub enum ControlEvent {
     ButtonDown(usize),
     PadButtonDown(usize),
     Hat(usize, HatBits),
-    /// End of an update of the device. Any control may have changed, including those already reported.
+    /// All controls: SDL has finished an update of the device. Includes changes that were already reported.
     All,
 }
 
-/// Pressed directions of a hat, as bits.
+/// Pressed directions of a hat, one bit per direction, as SDL defines them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HatBits(pub u8);
 
-/// `true` while the permission is available.
+/// Whether the permission to run SDL is available.
 static TURN: Mutex<bool> = Mutex::new(true);
 static GIVEN_BACK: Condvar = Condvar::new();
 
 impl SdlPermit {
-    /// Takes the permission; `None` if it is in use. Dropping it returns it.
+    /// Takes the permission to run SDL, or returns `None` if it is in use. Dropping the permission returns
+    /// it.
     pub fn take() -> Option<SdlPermit> {
         let mut free = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         std::mem::take(&mut *free).then(|| SdlPermit(()))
@@ -161,7 +162,7 @@ impl Sdl {
         Ok(sdl)
     }
 
-    /// Reads the events since the last call.
+    /// Calls `happened` with each device event since the last call.
     pub fn pump(&self, mut happened: impl FnMut(DeviceId, DeviceEvent)) {
         // SAFETY: see the module.
         unsafe { SDL_PumpEvents() };
@@ -210,7 +211,7 @@ impl Sdl {
 
 impl Drop for Sdl {
     fn drop(&mut self) {
-        // SAFETY: no device is open, since each borrows self.
+        // SAFETY: no device is open, since each open device borrows `self`.
         unsafe { SDL_Quit() };
     }
 }
@@ -230,7 +231,7 @@ impl OpenDevice<'_> {
         }
     }
 
-    /// Returns the label set, from the label of the lowest of the four buttons under the right thumb.
+    /// Returns the label set of a pad. It follows from the label of the lowest button under the right thumb.
     fn labels(&self) -> Labels {
         let Some(gamepad) = self.gamepad else {
             return Labels::Unknown;
@@ -247,7 +248,7 @@ impl OpenDevice<'_> {
     }
 
     pub fn axis_count(&self) -> usize {
-        // SAFETY: see the module, as in the next two.
+        // SAFETY: see the module; this also holds for the next two calls.
         count(unsafe { SDL_GetNumJoystickAxes(self.joystick.as_ptr()) })
     }
 
@@ -259,9 +260,9 @@ impl OpenDevice<'_> {
         count(unsafe { SDL_GetNumJoystickHats(self.joystick.as_ptr()) })
     }
 
-    /// Returns an axis, −1 to 1.
+    /// Returns the value of an axis, −1 to 1; 0 if there is no such axis.
     pub fn axis(&self, axis: usize) -> f32 {
-        // SAFETY: see the module, as in the next two.
+        // SAFETY: see the module; this also holds for the next two calls.
         unit(unsafe { SDL_GetJoystickAxis(self.joystick.as_ptr(), axis as c_int) })
     }
 
@@ -277,7 +278,7 @@ impl OpenDevice<'_> {
         self.gamepad.is_some()
     }
 
-    /// Returns a pad axis, −1 to 1, y towards the player; 0 if the device is not a pad.
+    /// Returns the value of a pad axis, −1 to 1, with y towards the player; 0 if the device is not a pad.
     pub fn pad_axis(&self, axis: SDL_GamepadAxis) -> f32 {
         // SAFETY: see the module.
         self.gamepad.map_or(0.0, |pad| {
@@ -320,7 +321,7 @@ impl HatBits {
     }
 }
 
-/// Converts an event; `None` for irrelevant ones.
+/// Converts an event of SDL; `None` if it does not concern a device's state.
 fn read(event: &SDL_Event) -> Option<(DeviceId, DeviceEvent)> {
     // SAFETY: SDL fills in the member that belongs to the type of the event.
     let (id, what) = unsafe {
@@ -348,12 +349,12 @@ fn read(event: &SDL_Event) -> Option<(DeviceId, DeviceEvent)> {
     Some((DeviceId(id.0), what))
 }
 
-/// Maps −32768 to 32767 to −1 to 1 and keeps 0.
+/// Maps the range −32768 to 32767 to −1 to 1. Maps 0 to exactly 0.
 fn unit(value: i16) -> f32 {
     f32::from(value) / if value < 0 { 32768.0 } else { 32767.0 }
 }
 
-/// Converts a count; SDL gives −1 for an unknown device.
+/// Converts a count from SDL, which is −1 for an unknown device; the result is then 0.
 fn count(number: c_int) -> usize {
     usize::try_from(number).unwrap_or(0)
 }
@@ -364,7 +365,7 @@ unsafe fn text(from: *const c_char) -> String {
     if from.is_null() {
         return String::new();
     }
-    // SAFETY: guaranteed by the caller, and it is not null.
+    // SAFETY: the caller guarantees a zero-terminated string, and the pointer is not null.
     unsafe { CStr::from_ptr(from) }
         .to_string_lossy()
         .into_owned()

@@ -1,4 +1,4 @@
-//! Tests with virtual devices, through all of SDL.
+//! Tests with virtual devices. Their input goes through all of SDL.
 
 #[cfg(feature = "haptic")]
 mod felt;

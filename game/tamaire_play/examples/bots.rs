@@ -1,8 +1,8 @@
-//! Measures how often a bot wins a level as intended.
+//! Measures how often a bot wins a level by the intended route.
 //!
 //! `cargo run --release -p tamaire_play --example bots -- LEVEL|all squeeze|shave FROM TO` lets the bot play
 //! with the seeds FROM to TO, for at most a minute each, on two threads. `all` stands for all built-in levels
-//! that offer the route. It prints a row per level with
+//! that offer the bot's route. The output has a row per level with
 //!
 //! - the number of rounds won by the bot's route, won by another route, and lost,
 //! - the medians of the won rounds: seconds, share of the mass kept in the largest pieces, number of pieces,
@@ -29,10 +29,10 @@ const ROUTES: [(&str, BotKind, Route); 2] = [
     ("shave", BotKind::Shave, Route::Shave),
 ];
 
-/// Measures how often a bot wins a level as intended.
+/// Measures how often a bot wins a level by the intended route.
 #[derive(Parser)]
 struct Options {
-    /// Name of a level, or `all` for all built-in levels that offer the route.
+    /// Name of a level, or `all` for all built-in levels that offer the bot's route.
     level: String,
     /// Bot to play: squeeze or shave.
     bot: String,
@@ -50,7 +50,7 @@ type Ending = (u64, Option<Outcome>);
 
 fn main() -> ExitCode {
     match play_all(&Options::parse()) {
-        // A closed pipe is no failure.
+        // A closed pipe ends the output early but is no failure.
         Err(error) if !is_closed(&*error) => {
             eprintln!("bots: {error}");
             ExitCode::FAILURE
@@ -93,7 +93,7 @@ fn play_all(options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns the requested level, or all that offer a route.
+/// Returns the level with the name `asked`; for `all`, returns all built-in levels that offer the route.
 fn levels(asked: &str, route: Route) -> Result<Vec<Level>, Box<dyn Error>> {
     let offers = |level: &Level| level.routes().contains(&route);
     if asked != "all" {
@@ -108,7 +108,7 @@ fn levels(asked: &str, route: Route) -> Result<Vec<Level>, Box<dyn Error>> {
     Ok(all.into_iter().filter(offers).collect())
 }
 
-/// Returns the endings of the rounds by seed.
+/// Plays a level with the seeds from `from` to `to` and returns the endings of the rounds, sorted by seed.
 fn endings(level: &Arc<Level>, kind: BotKind, from: u64, to: u64) -> Vec<Ending> {
     let seeds: Vec<u64> = (from..=to).collect();
     let next = AtomicUsize::new(0);
@@ -182,7 +182,7 @@ fn tell(id: &str, route: Route, endings: &[Ending]) -> io::Result<()> {
     )
 }
 
-/// Returns the middle value; 0 without values.
+/// Returns the median of the values; 0 without values.
 fn median(values: impl Iterator<Item = f32>) -> f32 {
     let mut sorted: Vec<f32> = values.collect();
     sorted.sort_by(f32::total_cmp);

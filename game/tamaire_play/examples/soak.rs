@@ -1,8 +1,8 @@
-//! Soak test: two hands that move at random for minutes. Nothing may break, leak or leave the room.
+//! Soak test: two hands move at random for minutes. Nothing may break, leak or leave the room.
 //!
-//! `cargo run --release -p tamaire_play --example soak -- [MINUTES [LEVEL …]]`, or `cargo xtask soak` with
-//! the same arguments, plays the given levels (by default all built-in ones) for the given time (by default
-//! ten minutes), each on its own thread. It prints a row per minute and level, and fails if a check failed.
+//! `cargo run --release -p tamaire_play --example soak -- [MINUTES [LEVEL …]]` plays the given levels for the
+//! given time, each on its own thread. By default it plays all built-in levels for ten minutes. `cargo xtask
+//! soak` takes the same arguments. The test prints a row per minute and level, and fails if a check failed.
 
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Vec3};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -21,8 +21,9 @@ const MOST_MINUTES: usize = 60;
 /// Seed of the hands' movement.
 const SEED: u64 = 7;
 
-/// Number of ticks in a minute, and between two checks of the room and the memory.
+/// Number of ticks in a minute.
 const MINUTE: usize = 60 * 60;
+/// Number of ticks between two checks of the room and the memory.
 const LOOK: usize = 60;
 
 /// Tolerated depth of a piece in a wall, in voxels. A crumb between a hand and a wall is pressed flat and
@@ -31,7 +32,8 @@ const MARGIN: f32 = 1.0;
 /// Tolerated depth of a hand, or of the centre of a piece, in a wall [m].
 const HAND_MARGIN: f32 = 1e-3;
 
-/// Maximum memory per element or node [bytes]. Tearing adds elements and nodes.
+/// Maximum memory per element or node [bytes]. Memory is checked per part because tearing adds elements and
+/// nodes.
 const MOST_EACH: f32 = 1200.0;
 /// Maximum factor by which the memory per element or node grows from the first half of a run to the second.
 /// It is above 1 because vectors double their capacity now and then.
@@ -45,7 +47,7 @@ thread_local! {
 }
 
 fn count(change: impl Fn(usize) -> usize) {
-    // A thread may free memory after its thread-local counter was destroyed.
+    // Ignores the error: a thread may free memory after its thread-local counter was destroyed.
     let _ = HELD.try_with(|held| held.set(change(held.get())));
 }
 
@@ -90,7 +92,7 @@ fn parse(words: &[String]) -> Result<(usize, Vec<Level>), String> {
             .filter(|minutes| (1..=MOST_MINUTES).contains(minutes))
             .ok_or_else(|| format!("expected 1 to {MOST_MINUTES} minutes first, found {word:?}"))?,
     };
-    // 3D levels take longest and start first.
+    // Puts 3D levels first, because they take longest.
     let all = NAMED_3D.iter().chain(&NAMED).map(|(id, _)| id.to_string());
     let named = words.iter().skip(1).cloned();
     let ids: Vec<String> = match words.len() {
@@ -167,7 +169,8 @@ fn play<D: Dim>(level: Level, minutes: usize) -> Result<(), String> {
     }
 }
 
-/// Returns the depth of the deepest node in a wall [m]. Fails if something is outside the room or not finite.
+/// Returns how deep the deepest node is in a wall [m]. Returns an error if something is outside the room or
+/// not finite.
 fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
     let [low, high] = round.level().arena();
     let beyond = |from: Vec3, to: Vec3| {
@@ -185,7 +188,7 @@ fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
     for (_, body) in round.world().soft_bodies() {
         for piece in body.piece_views() {
             let depth = beyond(piece.low, piece.high);
-            // Non-finite values appear in the centre only: the bounds ignore them.
+            // Checks the centre too, because the bounds ignore non-finite values.
             let middle = beyond(piece.centre, piece.centre);
             if !piece.centre.is_finite()
                 || depth > MARGIN * body.grid().voxel_size()
@@ -206,9 +209,10 @@ fn parts<D: Dim>(round: &Round<D>) -> [usize; 2] {
     [elements, meshes.map(|mesh| mesh.node_count()).sum()]
 }
 
-/// Returns the memory that this thread holds per element or node [bytes], without the recorded input.
+/// Returns the memory that this thread holds per element or node [bytes], without the memory for recorded
+/// input.
 fn held_each<D: Dim>(round: &Round<D>) -> f32 {
-    // The capacity of a growing vector is up to twice its length.
+    // Counts the recorded input twice, because the capacity of a growing vector is up to twice its length.
     let record = 2 * size_of_val(round.frames()) + 2 * size_of_val(round.hashes());
     let rest = HELD.get().saturating_sub(record);
     rest as f32 / parts(round).iter().sum::<usize>() as f32
@@ -228,7 +232,7 @@ fn tell<D: Dim>(id: &str, minute: usize, round: &Round<D>, [half, worst, deepest
     ));
 }
 
-/// Prints a line. The rounds continue even if the output is closed.
+/// Prints a line. Ignores a closed output, so that the rounds continue.
 fn say(line: &str) {
     let _ = writeln!(io::stdout(), "{line}");
 }

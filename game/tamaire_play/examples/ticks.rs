@@ -1,10 +1,10 @@
-//! Measures the cost of ticks.
+//! Measures the processor time of ticks.
 //!
 //! `cargo run --release -p tamaire_play --example ticks -- all` lets three bots play every level for at most
-//! 60 s with the seeds 1 to 5. It prints milliseconds: a row per round, one per level and one for all. Each
-//! round is played three times (`--runs`) with the same result. The minimum of the three times of a tick is
-//! its cost; the rest is noise of the machine. `--rules` separates engine and rules, in twice the time.
-//! `--json` prints one object per line instead of the rows. `--help` lists all options.
+//! 60 s with the seeds 1 to 5. The output is in milliseconds: a row per round, one per level and one for all
+//! levels. Each round is played three times (`--runs`) with the same result. The shortest time of a tick
+//! counts as its cost; longer times are noise of the machine. `--rules` measures engine and rules separately,
+//! in twice the time. `--json` prints one object per line instead of the rows. `--help` lists all options.
 
 use clap::Parser;
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, RigidBodyHandle, StepReport, Vec3};
@@ -37,19 +37,22 @@ struct Options {
     /// Names of the bots that play, separated by commas.
     #[arg(long, value_delimiter = ',', default_value = "squeeze,shave,random")]
     bots: Vec<String>,
-    /// Also measures engine and rules separately.
+    /// Also measures the engine alone and the rules alone.
     #[arg(long)]
     rules: bool,
-    /// Prints one JSON object per line.
+    /// Prints one JSON object per line instead of rows for a reader.
     #[arg(long)]
     json: bool,
 }
 
-/// A tick: its report, the targets of the hands, and its duration [ms], in total and of the engine alone.
+/// Measurement of a tick.
 struct Tick {
     report: StepReport,
+    /// Targets of the hands.
     goals: Vec<Vec3>,
+    /// Duration of the tick, engine and rules [ms].
     whole: f64,
+    /// Duration of the engine's part [ms].
     engine: f64,
 }
 
@@ -65,8 +68,9 @@ struct Row {
     milliseconds: Ranks,
     /// Duration of the rules alone [ms].
     rules: Option<Ranks>,
-    /// Index of the slowest tick, and number of nodes split in it.
+    /// Index of the slowest tick.
     worst_tick: usize,
+    /// Number of nodes split in the slowest tick.
     worst_released: u32,
 }
 
@@ -80,7 +84,7 @@ struct Ranks {
 
 fn main() -> ExitCode {
     match measure(&Options::parse()) {
-        // A closed pipe is no failure.
+        // A closed pipe ends the output early but is no failure.
         Err(error) if !is_closed(&*error) => {
             eprintln!("ticks: {error}");
             ExitCode::FAILURE
@@ -169,7 +173,7 @@ fn measure_level<D: Dim>(
     Ok(all)
 }
 
-/// Returns the row of many rounds together.
+/// Returns one row for all ticks of several rounds.
 fn summary(level: &str, times: &[f64]) -> Row {
     Row {
         level: level.into(),
@@ -260,8 +264,8 @@ fn play<D: Dim>(level: &Arc<Level>, kind: BotKind, seed: u64, most: usize) -> (V
 }
 
 /// Steps the world without the rules, with the recorded targets, and stores the duration of each tick. The
-/// rest of the round's tick is the cost of the rules. This runs after the round, not beside it, because both
-/// would then compete for the caches.
+/// difference from the tick of the round is the cost of the rules. Runs after the round, because in parallel
+/// both would compete for the caches.
 fn step_alone<D: Dim>(level: &Arc<Level>, ticks: &mut [Tick]) {
     let mut world = Round::<D>::new(level.clone()).world().clone();
     let mut hands: Vec<RigidBodyHandle> = Vec::new();

@@ -1,4 +1,4 @@
-//! Rounds with the dimension chosen at run time, for callers that do not access the bodies.
+//! Rounds with the dimension chosen at run time. They suit callers that do not access the bodies.
 
 use crate::round::Hand;
 use crate::{InputFrame, Level, Progress, Round};
@@ -14,7 +14,7 @@ pub enum AnyRound {
     Space(Round<Dim3>),
 }
 
-/// Evaluates an expression for either variant.
+/// Evaluates an expression for the round of either variant.
 macro_rules! both {
     ($any:expr, $one:ident => $act:expr) => {
         match $any {
@@ -88,7 +88,7 @@ impl AnyRound {
         })
     }
 
-    /// Returns the number of ticks, including those after a win.
+    /// Returns the number of ticks so far, including those after a win.
     pub fn ticks(&self) -> u64 {
         both!(self, round => round.world().ticks())
     }

@@ -7,14 +7,14 @@ use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{BoxText, ObstacleText};
 use std::collections::BTreeSet;
 
-/// Growth of a basket on each side, as a share of its half width.
+/// Growth of a wider basket on each side, as a share of the basket's half width.
 const WIDER: f32 = 0.25;
-/// Minimum space between a side of the basket and the arena's end for the side to move, as a multiple of its
-/// movement. A bar must fit into this space.
+/// Minimum space between a side of the basket and the arena's end, as a multiple of the side's movement. With
+/// less space, the side stays, because a bar must fit between both.
 const ROOM: f32 = 2.5;
 
 impl Level {
-    /// Returns the level with these assists applied, in addition to those that it has already.
+    /// Returns the level with `assists` added to the assists that the level already has.
     ///
     /// # Errors
     /// [`LevelError`] if the resulting level cannot be played.
@@ -22,13 +22,13 @@ impl Level {
         Self::from_scene(&self.id, assisted(self.scene(), assists))
     }
 
-    /// Returns whether this is the level `plain`, with or without assists.
+    /// Returns whether this level and `plain` are the same apart from assists.
     pub fn is_version_of(&self, plain: &Level) -> bool {
         self.id == plain.id && *self.scene() == assisted(plain.scene(), &self.game().assists)
     }
 }
 
-/// Returns the scene with these assists applied; see [`Level::assisted`].
+/// Returns the scene with `assists` applied; see [`Level::assisted`].
 pub(crate) fn assisted(scene: &Scene, assists: &BTreeSet<Assist>) -> Scene {
     let mut scene = scene.clone();
     for &assist in assists {
@@ -55,7 +55,8 @@ fn make_unbreakable(scene: &mut Scene) {
     }
 }
 
-/// Moves the sides of the basket apart, together with the obstacles around it, on every axis without gravity.
+/// Widens the basket on every axis without gravity: moves the sides apart, together with the obstacles around
+/// them.
 fn widen(scene: &mut Scene) {
     let Some(basket) = scene.game.as_mut().and_then(|game| game.basket.as_mut()) else {
         return;
@@ -75,7 +76,8 @@ fn widen(scene: &mut Scene) {
 /// Piecewise linear map of coordinates on an axis for a wider basket. The basket is stretched, the space on
 /// both sides is compressed, and the ends of the arena stay in place.
 struct Stretch {
-    /// Low end of the arena, low and high side of the basket, high end of the arena, before the change [m].
+    /// Coordinates before the change [m]: low end of the arena, low side of the basket, high side of the
+    /// basket, high end of the arena.
     from: [f32; 4],
     to: [f32; 4],
 }
@@ -101,8 +103,8 @@ impl Stretch {
         self.to[k] + share * (self.to[k + 1] - self.to[k])
     }
 
-    /// Returns the new centre of a ball or bar with centre `x` and radius `reach`. The side that faces the
-    /// basket follows the map, and the radius stays.
+    /// Returns the new centre of a ball or bar with centre `x` and radius `reach`. The map moves the side
+    /// that faces the basket, and the centre follows at the same radius.
     fn middle(&self, x: f32, reach: f32) -> f32 {
         let out = x - 0.5 * (self.from[1] + self.from[2]);
         let side = out.clamp(-reach, reach);
@@ -156,7 +158,7 @@ mod tests {
         let basket = |level: &Level| level.game().basket.clone().unwrap();
         let [before, after] = [basket(&plain), basket(&wide)];
         assert!((after.half[1] - 1.25 * before.half[1]).abs() < 1e-5);
-        // The bar at the basket's end has no space behind it, so that side stays.
+        // The far side of the basket must stay, because the bar there has no space behind it.
         let end = |basket: &BoxText| basket.centre[0] + basket.half[0];
         assert!((end(&after) - end(&before)).abs() < 1e-5);
         assert_eq!(plain.arena(), wide.arena());
@@ -192,7 +194,7 @@ mod tests {
                 size(after) > 1.2 * size(before),
                 "{id}: {before:?}, {after:?}"
             );
-            // No bar reaches further into the basket than before.
+            // Checks that no bar reaches further into the wider basket than into the plain one.
             let into = |level: &Level| -> Vec<f32> {
                 let basket = level.game().basket.as_ref().unwrap();
                 let bars = level

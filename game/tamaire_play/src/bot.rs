@@ -1,4 +1,4 @@
-//! Players that are programs. They see the same world as a human player and answer with the same
+//! Bots: programs that play. A bot sees the same world as a human player and answers with the same
 //! [`InputFrame`].
 
 mod map;
@@ -8,43 +8,47 @@ use crate::{AnyRound, InputFrame, Outcome, Round};
 use fuwafuwa::{DEFAULT_TICK, Dim, Vec3};
 use sight::{Sight, split};
 
-/// Speed of a bot's hand on a free path (`BRISK`), and when it pushes (`GENTLE`) [m/s].
+/// Speed of a bot's hand on a free path [m/s].
 const BRISK: f32 = 3.0;
+/// Speed of a bot's hand when it pushes [m/s].
 const GENTLE: f32 = 0.7;
 /// Initial speed of a bot's hand when it withdraws from the body [m/s].
 const CAREFUL: f32 = 0.2;
-/// Number of ticks without progress after which a bot turns to another piece.
+/// Number of ticks without progress after which a bot chooses another piece to push.
 const PATIENCE: u32 = 210;
-/// Offset of the first strokes from the centre of a piece in 2D and in 3D, as a share of the piece's `reach`.
-/// In 2D a stroke cuts off everything outside its path. In 3D a stroke so far out would only plough a furrow.
+/// Distance of the first shaving strokes from the centre of a piece, in 2D and in 3D, as a share of the
+/// piece's `reach`. In 2D a stroke cuts off everything outside its path, so it may be far out. In 3D such a
+/// stroke would only plough a furrow.
 const FIRST_OFFSET: [f32; 2] = [0.78, 0.55];
-/// Factor on the offset after a stroke that took nothing off.
+/// Factor on the distance of strokes from the centre after a stroke that took nothing off.
 const CLOSER: f32 = 0.85;
-/// Minimum offset of strokes in 2D and in 3D. If strokes this close to the centre take nothing off in 3D, the
-/// bot stops shaving for a while, because the rest may fit as it is. In 2D the last strokes go through the
-/// centre.
+/// Minimum distance of strokes from the centre of a piece, in 2D and in 3D, as a factor on [`FIRST_OFFSET`].
+/// If closer strokes would be needed, the bot stops shaving for a while and pushes, because the piece may fit
+/// as it is. In 2D the minimum is 0: the last strokes go through the centre.
 const CLOSEST: [f32; 2] = [0.0, 0.4];
-/// Credit for progress in 3D, where heavy pieces on a floor move slowly. Each time the pushed piece has come
-/// closer to the mouth by `NEARER` [m], the waiting time of a gathering bot is reduced by `ON_ITS_WAY`
-/// [ticks].
+/// Decrease of the pushed piece's distance from the mouth that counts as progress in 3D [m]. Heavy pieces on
+/// a floor move slowly, so a bot must wait longer for them.
 const NEARER: f32 = 0.05;
+/// Reduction of the waiting time without progress each time the piece has come `NEARER` [ticks].
 const ON_ITS_WAY: u32 = 20;
-/// Additional depth of a gathering bot's push after a long time without progress, in 2D and in 3D [m].
+/// Depth added to a push when a bot has long made no progress, in 2D and in 3D [m]. The hand's target lies
+/// this much deeper in the piece, so the hand pushes harder.
 const FIRMER: [f32; 2] = [0.12, 0.3];
-/// Value of [`Progress::kept`](crate::Progress::kept) below which a bot stops shaving and starts to gather:
-/// it pushes the pieces in.
+/// Value of [`Progress::kept`](crate::Progress::kept) below which a bot stops shaving and pushes the pieces
+/// in.
 const SMALL_ENOUGH: f32 = 0.92;
-/// Share of the total mass in the basket above which strokes are limited to the speed `BRISK`.
+/// Share of the total mass in the basket above which strokes are limited to the speed `BRISK`. Faster strokes
+/// would break a piece in the mouth up.
 const IN_THE_MOUTH: f32 = 0.1;
-/// Number of ticks that a bot keeps pressing after enough mass is in the basket.
+/// Number of ticks for which a bot keeps pushing after enough mass is in the basket.
 const LONG_ENOUGH: u32 = 30;
 
 /// Strategy of a bot.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum BotKind {
-    /// Pushes the whole body in.
+    /// Pushes the whole body into the basket.
     Squeeze,
-    /// Tears bits off until the body fits.
+    /// Tears bits off the body until it fits into the basket.
     Shave,
     /// Moves to random positions, slowly or fast.
     Random,
@@ -62,29 +66,33 @@ impl BotKind {
     ];
 }
 
-/// A player that is a program.
+/// Program that plays as a player.
 #[derive(Clone, Debug)]
 pub struct Bot {
     kind: BotKind,
     random: fastrand::Rng,
-    /// Random variations of the behaviour by seed, each from -1 to 1.
+    /// Random variations of the bot's behaviour, which follow from the seed; each from −1 to 1.
     temper: [f32; 3],
-    /// Target and remaining ticks of a random bot, by player.
+    /// Target of a randomly moving bot and number of ticks until the next target, by player.
     random_targets: [(Vec3, u32); crate::PLAYERS],
     stroke: Stroke,
     strokes: u32,
-    /// Factor on [`FIRST_OFFSET`] for the next stroke, and number of pieces before the last stroke.
+    /// Factor on [`FIRST_OFFSET`] for the next stroke.
     off: f32,
+    /// Number of pieces before the last stroke.
     pieces: usize,
+    /// Whether a shaving bot now pushes pieces in instead of shaving.
     gathers: bool,
-    /// Value of [`Progress::kept`](crate::Progress::kept) below which the bot starts to gather.
+    /// Value of [`Progress::kept`](crate::Progress::kept) below which the bot stops shaving and pushes the
+    /// pieces in.
     aim: f32,
-    /// Share of the mass in the basket when the waiting for progress began, number of ticks waited since
-    /// then, and number of more important pieces to skip.
+    /// Share of the mass in the basket when the bot last made progress.
     best: f32,
+    /// Number of ticks since the bot last made progress.
     waited: u32,
+    /// Number of more important pieces to skip.
     skips: usize,
-    /// Minimum distance of the current piece from the mouth since the last progress [m].
+    /// Minimum distance of the pushed piece from the mouth since the bot last made progress [m].
     near: f32,
     /// Number of ticks for which enough mass has been in the basket.
     pressed: u32,
@@ -94,9 +102,10 @@ pub struct Bot {
 #[derive(Copy, Clone, Debug, PartialEq)]
 enum Stroke {
     Rest,
-    /// Moving to the start of the next stroke, relative to the piece [m], for at most this number of ticks.
+    /// The hand moves to the start of the next stroke: position relative to the piece [m], and remaining
+    /// ticks.
     Reach(Vec3, u32),
-    /// Moving to the end of the stroke [m], for at most this number of ticks.
+    /// The hand moves to the end of the stroke: position [m], and remaining ticks.
     Cut(Vec3, u32),
 }
 
@@ -123,7 +132,7 @@ impl AnyRound {
 }
 
 impl Bot {
-    /// Creates a bot. Bots with different seeds play differently.
+    /// Creates a bot. Bots with different seeds behave differently.
     pub fn new(kind: BotKind, seed: u64) -> Self {
         let mut random = fastrand::Rng::with_seed(seed);
         let temper = [0; 3].map(|_: i32| 2.0 * random.f32() - 1.0);
@@ -133,7 +142,7 @@ impl Bot {
             temper,
             random_targets: Default::default(),
             stroke: Stroke::Rest,
-            // Half of the bots start on one side, half on the other.
+            // Makes about half of the bots, by seed, start their strokes on the other side.
             strokes: u32::from(temper[0] > 0.0),
             off: 1.0,
             pieces: 0,
@@ -163,13 +172,14 @@ impl Bot {
         }
     }
 
-    /// Chooses the most important piece, or the next smaller one after a long time without progress.
+    /// Looks at the round. Chooses the most important piece to push, or another one after a long time without
+    /// progress.
     fn look<D: Dim>(&mut self, round: &Round<D>) -> Option<Sight> {
         let inside = round.progress().inside;
         self.waited += 1;
         if inside > self.best + 0.02 {
             self.wait_from(inside);
-            // One tick later than in `shave`, so that `shave` can first decide to go on shaving.
+            // Waits one tick longer than `shave`, so that `shave` can first decide to go on shaving.
         } else if self.waited > PATIENCE + 1 {
             self.wait_from(inside);
             self.skips = (self.skips + 1) % 4;
@@ -182,7 +192,7 @@ impl Bot {
         Some(sight)
     }
 
-    /// Restarts the waiting time for progress.
+    /// Restarts the waiting time for progress, with the share `inside` of the mass in the basket.
     fn wait_from(&mut self, inside: f32) {
         (self.best, self.waited, self.near) = (inside, 0, f32::INFINITY);
     }
@@ -202,7 +212,8 @@ impl Bot {
         frame
     }
 
-    /// Pushes the piece from behind towards the basket, and withdraws once enough mass is inside.
+    /// Pushes the piece from behind towards the basket. Moves the hand away once enough mass is in the
+    /// basket.
     fn push<D: Dim>(&mut self, sight: &Sight) -> Vec3 {
         let lets_go = self.pressed > LONG_ENOUGH;
         self.pressed = match sight.surplus > if lets_go { 0.0 } else { 0.05 } {
@@ -210,7 +221,7 @@ impl Bot {
             false => 0,
         };
         if self.pressed > LONG_ENOUGH {
-            // Slowly at first: compressed pieces expand and follow the hand.
+            // The hand withdraws slowly at first, because a compressed piece expands and follows it.
             let pace = CAREFUL + 0.004 * (self.pressed - LONG_ENOUGH) as f32;
             return self.go(sight, sight.away, pace.min(BRISK));
         }
@@ -220,14 +231,14 @@ impl Bot {
         if !is_behind && (sight.hand - piece.behind).length() > 0.05 {
             return self.go(sight, piece.behind, BRISK);
         }
-        // Torn bodies are pushed gently, and harder only without progress.
+        // A bot that has torn the body pushes gently, and harder only after a time without progress.
         let firm = (2.0 * self.waited as f32 / PATIENCE as f32 - 1.0).max(0.0);
         let depth = match self.gathers {
             true => 0.15 + FIRMER[D::N - 2] * firm,
             false => 0.25,
         } + 0.02 * self.temper[1];
         let goal = piece.centre + piece.direction * (depth - piece.reach);
-        // A piece wedged in the mouth is pushed in corner by corner.
+        // If a piece is wedged in the mouth, the hand pushes its two corners in turn.
         let side = match (firm > 0.0 && !piece.fits, self.waited / 30 % 2) {
             (false, _) => 0.0,
             (true, 0) => -0.35,
@@ -241,8 +252,8 @@ impl Bot {
     /// enough. Then pushes in pieces until the basket holds the required mass.
     fn shave<D: Dim>(&mut self, sight: &Sight) -> Vec3 {
         self.gathers |= sight.kept < self.aim;
-        // A piece stuck in front of the mouth must become smaller. This does not apply to a piece chosen
-        // after others failed, nor if so little mass is missing that the next piece may suffice.
+        // A piece is stuck if it is too wide for the mouth. Excluded are a piece chosen after others failed,
+        // and the case that so little mass is missing that the next piece may suffice.
         let is_stuck = self.skips == 0 && !sight.piece.fits && sight.surplus < -0.05;
         if self.gathers && self.waited > PATIENCE && is_stuck {
             (self.gathers, self.aim) = (false, SMALL_ENOUGH * sight.kept);
@@ -251,7 +262,8 @@ impl Bot {
         if self.gathers {
             return self.push::<D>(sight);
         }
-        // The waiting time counts only while gathering, which always starts with the largest piece.
+        // Keeps the waiting time at zero while shaving. It counts only while the bot pushes pieces in, which
+        // always starts with the largest one.
         self.wait_from(0.0);
         self.skips = 0;
         let Sight {

@@ -1,4 +1,4 @@
-//! Input of the players in a tick, from mouse, touch, stick, keys, a program or a recording.
+//! Input of the players in a tick. It comes from mouse, touch, stick, keys, a program or a recording.
 
 use fuwafuwa::Vec3;
 use serde::{Deserialize, Serialize};
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 pub const PLAYERS: usize = 2;
 
 /// Number of units of a target position per metre. Targets are integers, so that a recording holds exactly
-/// the played input. Coordinates range over ±4 m, and the arena lies within them.
+/// the input that was played. Coordinates range over ±4 m, which contains the arena.
 pub const UNITS_PER_METRE: f32 = 8192.0;
 
-/// Coordinates that stand for an absent player in a recorded row. No target has these coordinates.
+/// Coordinates that mark a player without a target in a recorded row. No target has these coordinates.
 const ABSENT: [i16; 3] = [i16::MIN; 3];
 
 /// Target positions of the players' hands at the end of a tick.
@@ -35,7 +35,8 @@ impl InputFrame {
         self
     }
 
-    /// Encodes the frame as a row of numbers: three for each player, up to the last player with a target.
+    /// Encodes the frame as a row of numbers, for a recording. The row has three numbers for each player, up
+    /// to the last player with a target.
     pub(crate) fn row(&self) -> Vec<i16> {
         let hands = self.goals.iter().rposition(Option::is_some);
         let goals = &self.goals[..hands.map_or(0, |last| last + 1)];

@@ -1,4 +1,4 @@
-//! Levels: a scene with a table `[game]`, in a text file.
+//! Levels. A level is a text file with a scene and a table `[game]`.
 
 mod room;
 
@@ -13,15 +13,15 @@ use std::any::Any;
 use std::io;
 use std::sync::{Arc, OnceLock};
 
-/// A checked level: its world can be built.
+/// Level that was checked, so its world can be built.
 #[derive(Clone, Debug)]
 pub struct Level {
-    /// Name of a built-in level, or name of the file.
+    /// Name of a built-in level, or file name of any other level.
     pub id: String,
     scene: Scene,
     game: GameText,
-    /// The [`Start`] in the level's dimension, built at first use, because copying it is far faster than
-    /// building it.
+    /// The [`Start`] in the level's dimension. The world is built at first use and then copied, because
+    /// copying is far faster than building.
     start: Arc<OnceLock<Box<dyn Any + Send + Sync>>>,
 }
 
@@ -40,13 +40,13 @@ pub enum LevelError {
     /// The scene is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// No body can be made from a picture or a model.
+    /// A picture or a model cannot be made into a body.
     #[error("cannot make a body from {0}")]
     NoBody(
-        /// File, position in it, and expected content.
+        /// Message: the file, the position in it, and the expected content.
         String,
     ),
-    /// The scene is valid, but cannot be played.
+    /// The scene is valid, but it cannot be played as a level.
     #[error("{id}: {field}: {reason}")]
     NoGame {
         /// Name of the level.
@@ -61,25 +61,25 @@ pub enum LevelError {
     Unreadable(
         /// Name of the file.
         String,
-        /// Reason.
+        /// Reason why the file cannot be read.
         String,
     ),
     /// No built-in level has this name.
     #[error("no level or file {id:?}, expected one of {known}")]
     Unknown {
-        /// The requested name.
+        /// The name that was requested.
         id: String,
         /// Names of the built-in levels.
         known: String,
     },
 }
 
-/// Maximum number of voxels, solid or empty, in the grids of all bodies of a level: eight squares 64 voxels
-/// wide, or a ball 32 voxels wide. Even if all voxels are split apart, the world is built within seconds,
-/// moves slowly, and fits into one GPU buffer.
+/// Maximum number of voxels, solid or empty, in the grids of all bodies of a level. For example, eight
+/// squares 64 voxels wide, or a ball 32 voxels wide. Even if all these voxels are split apart, the world is
+/// built within seconds, runs slowly but runs, and fits into one GPU buffer.
 pub const MAX_VOXELS: usize = 1 << 15;
-/// Maximum number of voxels in 3D if all bodies start whole and with large elements inside: a ball 64 voxels
-/// wide. These are eight times [`MAX_VOXELS`], but give only five times as many elements.
+/// Maximum number of voxels in 3D if all bodies start whole and with large elements inside. For example, a
+/// ball 64 voxels wide. This is eight times [`MAX_VOXELS`] but gives only five times as many elements.
 pub const MAX_WHOLE_VOXELS: usize = 1 << 18;
 
 /// Maximum size of a stored level with its embedded files [bytes].
@@ -113,7 +113,7 @@ const FILES: [(&str, &[u8]); 2] = [
     ("pudding.vox", include_bytes!("../levels/pudding.vox")),
 ];
 
-/// Level into which a picture or a model is put as the body, by file extension.
+/// Built-in level in which a picture or a model replaces the body, by file extension.
 const FRAMES: [(&str, &str); 2] = [("png", "classic"), ("vox", "classic-3d")];
 
 impl Level {
@@ -135,7 +135,7 @@ impl Level {
             known.map_or_else(nothing, |(_, bytes)| Ok(bytes.to_vec()))
         };
         scene.embed_files(&fetch)?;
-        // Does not build the world as a check: tests build every built-in level.
+        // Skips the check that builds the world, because tests build the world of every built-in level.
         Self::unbuilt(id, scene)
     }
 
@@ -175,7 +175,7 @@ impl Level {
         Ok(text)
     }
 
-    /// Puts a body made from a file into a built-in level.
+    /// Replaces the body of the built-in level `frame` with one made from a file.
     fn framed(frame: &str, id: &str, bytes: &[u8]) -> Result<Self, LevelError> {
         let mut level = Self::open(frame)?;
         level.id = id.into();
@@ -183,7 +183,7 @@ impl Level {
         if let Some(body) = level.scene.body.first_mut() {
             (body.shape, body.file) = (None, Some(name.into()));
             if level.scene.dim == 3 {
-                // A model has its own resolution. All of its colours get the soft material.
+                // Takes the resolution from the model, and gives all colours of the model the soft material.
                 let all = (1..=u8::MAX).map(|index| (index.to_string(), 1));
                 (body.n, body.colours) = (None, all.collect());
             }
@@ -213,7 +213,7 @@ impl Level {
         checked.map(|()| level).map_err(wrong)
     }
 
-    /// Makes a level without the checks that need its world.
+    /// Makes a level without the checks that have to build its world.
     fn unbuilt(id: &str, scene: Scene) -> Result<Self, LevelError> {
         let missing = |field, reason: &str| LevelError::NoGame {
             id: id.into(),
@@ -279,8 +279,8 @@ impl Level {
         &self.game
     }
 
-    /// Returns the routes by which the level can be won: none without a basket, no shaving if nothing tears,
-    /// and only the stated ones if the level states some.
+    /// Returns the routes by which the level can be won. A level without a basket has none, and a level in
+    /// which nothing tears has no shaving. If the level states routes, only these remain.
     pub fn routes(&self) -> &[Route] {
         match self.game.routes.as_slice() {
             [] => self.possible_routes(),
@@ -335,7 +335,8 @@ impl Level {
 
 /// Returns the hash of a scene; see [`Level::hash`].
 pub(crate) fn hash_of(scene: &Scene) -> u64 {
-    // The former name of this key keeps the levels of existing replays, links and logbooks.
+    // Hashes the key `max_substeps` under its former name. So the hashes in existing replays, links and
+    // logbooks stay valid.
     let text = text_of(scene).replacen("\nmax_substeps = ", "\nmost_substeps = ", 1);
     Hash::of(text.as_bytes())
 }
@@ -353,7 +354,7 @@ pub(crate) fn without_assists(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Removes the folders from file names, so that a replay does not reveal them.
+/// Removes the folders from the file names in a scene, so that a replay does not reveal them.
 fn forget_folders(scene: &mut Scene) {
     for file in scene.body.iter_mut().filter_map(|body| body.file.as_mut()) {
         *file = file_name(file).into();
@@ -376,7 +377,7 @@ fn nothing() -> io::Result<Vec<u8>> {
     Err(io::ErrorKind::NotFound.into())
 }
 
-/// Returns the bytes of a file as a text of at most `most` bytes.
+/// Returns the bytes of a file as a text. Fails if the file has more than `most` bytes or is no text.
 fn text_in<'a>(id: &str, bytes: &'a [u8], most: u64) -> Result<&'a str, LevelError> {
     let wrong = |reason: String| LevelError::Unreadable(id.into(), reason);
     let found = bytes.len() as u64;
@@ -389,8 +390,8 @@ fn text_in<'a>(id: &str, bytes: &'a [u8], most: u64) -> Result<&'a str, LevelErr
     text.map_err(|error| wrong(format!("expected a text in UTF-8: {error}")))
 }
 
-/// Attributes errors in a body made from a file to that file, because the player did not choose the level
-/// around it.
+/// Makes an error in a body name the file from which the body was made. The player chose the file, not the
+/// level around it.
 fn attribute_to_file(file: &str, error: LevelError) -> LevelError {
     match error {
         LevelError::Scene(SceneError::Shape { mut error, .. }) => {
@@ -476,7 +477,7 @@ mod tests {
         );
     }
 
-    /// Returns the error of a level with these changes.
+    /// Returns the error message of a level whose text was changed, or `None` if it is valid.
     fn refusal(id: &str, text: &str, changes: &[&str]) -> Option<String> {
         let changes: Vec<String> = changes.iter().map(|change| change.to_string()).collect();
         let scene = Scene::read(id, text, &changes).unwrap();

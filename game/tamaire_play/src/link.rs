@@ -50,8 +50,9 @@ use fuwafuwa::inspect::Hash;
 use level::SentLevel;
 use serde::{Deserialize, Serialize};
 
-/// Formats of a fragment: base64url (`FORMAT`) and decimal digits (`DIGITS`).
+/// Digit in a fragment that stands for bytes in base64url.
 const FORMAT: char = '1';
+/// Digit in a fragment that stands for bytes in decimal digits.
 const DIGITS: char = '0';
 const ROUND: char = 'r';
 const LEVEL: char = 'l';
@@ -86,11 +87,11 @@ impl Link {
 }
 
 impl Replay {
-    /// Returns the replay as the fragment of a link. Each hash is shortened to four digits, which still
-    /// detect a diverging replay.
+    /// Returns the replay as the fragment of a link. Each hash is shortened to four digits, which suffice to
+    /// detect a playback that differs from the round.
     ///
     /// # Errors
-    /// [`LinkError`] if the fragment is too long, or if it could not be read again.
+    /// [`LinkError`] if the fragment is too long, or if reading it would fail.
     pub fn link(&self) -> Result<String, LinkError> {
         let fragment = self.fragment()?;
         check_length(fragment.len())?;
@@ -100,13 +101,13 @@ impl Replay {
     /// Returns the replay as a fragment of any length, for storing rounds.
     ///
     /// # Errors
-    /// [`LinkError`] if the fragment could not be read again.
+    /// [`LinkError`] if reading the fragment would fail.
     pub fn fragment(&self) -> Result<String, LinkError> {
         Ok(packed(ROUND, &(VERSION, self.sent()?)))
     }
 
-    /// Returns the replay as a fragment in decimal digits, which take less space in a QR code and more
-    /// elsewhere.
+    /// Returns the replay as a fragment in decimal digits. Digits take less space than base64 in a QR code,
+    /// and more elsewhere.
     ///
     /// # Errors
     /// As [`Replay::link`].
@@ -171,13 +172,13 @@ impl Level {
     }
 }
 
-/// Returns the address of a page with a fragment. A fragment in `page` is replaced.
+/// Returns the address of a page with a fragment. If `page` already has a fragment, it is replaced.
 pub fn address(page: &str, fragment: &str) -> String {
     let page = page.split_once('#').map_or(page, |(page, _)| page);
     format!("{page}#{fragment}")
 }
 
-/// Encoded round; in the bytes, the version of the rules precedes it.
+/// Content of a link to a round. In the encoded bytes, the version of the rules stands before it.
 #[derive(Debug, Serialize, Deserialize)]
 struct SentRound {
     game: String,
@@ -227,7 +228,7 @@ fn last_digits(hash: &str) -> [u8; 2] {
     (number.expect("check() verified the hexadecimal digits") as u16).to_be_bytes()
 }
 
-/// Splits a fragment into its kind and the rest.
+/// Splits a fragment into the letter of its kind and the text after it.
 fn parts(fragment: &str) -> Result<(char, &str), LinkError> {
     let mut letters = fragment.chars();
     let kind = letters.next().filter(|kind| [ROUND, LEVEL].contains(kind));
@@ -244,13 +245,13 @@ fn packed(kind: char, sent: &impl Serialize) -> String {
     format!("{kind}{FORMAT}{}{END}", BASE64.encode(sealed(kind, sent)))
 }
 
-/// Encodes a value as bytes, preceded by their checksum.
+/// Encodes a value as bytes, with the checksum in front.
 fn sealed(kind: char, sent: &impl Serialize) -> Vec<u8> {
     let payload = postcard::to_stdvec(sent).expect("serialization into a vector cannot fail");
     [&checksum(kind, &payload)[..], &payload].concat()
 }
 
-/// Decodes the rest of a fragment and verifies its checksum.
+/// Decodes the text after the letter of a fragment and verifies its checksum.
 fn unpacked(kind: char, rest: &str) -> Result<Vec<u8>, LinkError> {
     let (format, body) = rest.split_at(1);
     let body = body.strip_suffix(END).ok_or(LinkError::CutShort)?;
@@ -264,7 +265,7 @@ fn unpacked(kind: char, rest: &str) -> Result<Vec<u8>, LinkError> {
     is_whole.then_some(payload).ok_or(LinkError::Damaged)
 }
 
-/// Checksum of the kind and the payload. It detects accidental changes, not forgery.
+/// Returns the checksum of a fragment's kind and payload. It detects accidental changes, not forgery.
 fn checksum(kind: char, payload: &[u8]) -> [u8; 4] {
     let bytes = [&[kind as u8], payload].concat();
     (Hash::of(&bytes) as u32).to_le_bytes()
@@ -316,7 +317,7 @@ mod tests {
     #[test]
     fn links_with_a_valid_checksum_are_still_checked() {
         let damaged = LinkError::Damaged.to_string();
-        // Eight megabytes before compression.
+        // A text of eight megabytes that compresses to few bytes. Reading the link must fail quickly.
         let bomb = whole(&" ".repeat(8 << 20));
         assert_eq!(refusal(LEVEL, &bomb), damaged);
         assert_eq!(refusal(ROUND, &(VERSION, round(bomb, 1, vec![0]))), damaged);

@@ -10,21 +10,22 @@ use serde::{Deserialize, Serialize};
 use std::str::Utf8Error;
 use std::sync::Arc;
 
-/// Version of the format and the rules. It changes when an older round would run differently.
+/// Version of the replay format and of the rules. A change of either that makes an older round run
+/// differently requires a new version.
 pub const VERSION: u32 = 7;
 
-/// Maximum size of a replay; longer ones are not read [bytes].
+/// Maximum size of a replay [bytes]. Larger replays are rejected.
 pub const MAX_BYTES: usize = 1 << 25;
 /// Maximum length of the level name in a replay [characters].
 pub(crate) const MAX_NAME: usize = 200;
-/// Minimum number of hexadecimal digits of a hash, as in a link.
+/// Minimum number of hexadecimal digits of a hash in a replay. Replays from links have this number.
 const FEW_DIGITS: usize = 4;
 
 /// A recorded round: its level, its input and its outcome.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Replay {
-    /// Version of the format and the rules, [`VERSION`].
+    /// Version of the replay format and of the rules; only [`VERSION`] can be played.
     pub version: u32,
     /// Version of the game.
     pub game: String,
@@ -34,10 +35,10 @@ pub struct Replay {
     pub level_hash: String,
     /// Outcome, if the round was won.
     pub outcome: Option<Outcome>,
-    /// Last hexadecimal digits of the world's hash after every sixtieth tick and after the last one: all
-    /// sixteen, or four if the replay came from a link.
+    /// Hexadecimal digits of the world's hash after every sixtieth tick and after the last tick. All sixteen
+    /// digits, or the last four if the replay came from a link.
     pub hashes: Vec<String>,
-    /// Input: a row of target positions for each tick.
+    /// Input of the players: a row of target positions for each tick.
     pub(crate) frames: Vec<Vec<i16>>,
     /// Scene of the level.
     pub(crate) scene: Scene,
@@ -64,19 +65,19 @@ pub enum ReplayError {
     /// The level does not match its hash.
     #[error("the level in this replay was changed")]
     LevelChanged,
-    /// The world diverges from the recorded hashes.
+    /// The playback diverges from the recorded round: a hash differs.
     #[error("this replay was changed: it goes another way at second {second}")]
     Differs {
-        /// Time of the first different hash, in seconds from the start.
+        /// Time of the first hash that differs, in seconds from the start.
         second: usize,
     },
-    /// The outcome differs from the recorded one.
+    /// The outcome of the playback differs from the recorded outcome.
     #[error("this replay was changed: its result differs from the recorded one")]
     OutcomeDiffers,
 }
 
 impl Replay {
-    /// Records a round. If it is longer than [`MAX_TICKS`], only its beginning is recorded, without an
+    /// Records a round. Of a round longer than [`MAX_TICKS`], only the beginning is recorded, without an
     /// outcome.
     pub fn of<D: Dim>(round: &Round<D>) -> Self {
         let (level, outcome) = (round.level(), round.progress().outcome);
@@ -87,7 +88,7 @@ impl Replay {
         Self {
             version: VERSION,
             game: env!("CARGO_PKG_VERSION").into(),
-            // The folders of a file are private and left out.
+            // Leaves out the folders of the level's file, because they are private.
             level: stem(&level.id).chars().take(MAX_NAME).collect(),
             level_hash: format!("{:016x}", level.hash()),
             outcome: outcome.filter(|outcome| outcome.ticks == round.frames().len() as u64),
@@ -110,7 +111,7 @@ impl Replay {
     /// Reads a replay from a text.
     ///
     /// # Errors
-    /// [`ReplayError`] if the text is no replay, or one of another version.
+    /// [`ReplayError`] if the text is not a replay, or is a replay of another version.
     pub fn read(text: &str) -> Result<Self, ReplayError> {
         check_length(text.len())?;
         #[derive(Deserialize)]
@@ -118,7 +119,7 @@ impl Replay {
             version: u32,
         }
         let wrong = |error: toml::de::Error| ReplayError::Text(shortened(error.message(), 400));
-        // The version is checked first, because other versions may have other fields.
+        // Checks the version before reading the fields, because other versions may have other fields.
         let Header { version } = toml::from_str(text).map_err(wrong)?;
         if version != VERSION {
             return Err(ReplayError::Version { found: version });
@@ -128,7 +129,7 @@ impl Replay {
         Ok(replay)
     }
 
-    /// Checks that all parts match and that nothing is too long.
+    /// Checks that the parts of the replay match each other, and that none is too long.
     pub(crate) fn check(&self) -> Result<(), ReplayError> {
         let letters = self.level.chars().count();
         if letters > MAX_NAME {
@@ -162,7 +163,7 @@ impl Replay {
         }
         let mut bodies = self.scene.body.iter();
         if bodies.any(BodyText::lacks_content) {
-            // A replay must not name files that would be opened.
+            // Rejects file names, because the files would be opened.
             let reason = "expected embedded content for every body with a file".into();
             return Err(ReplayError::Text(reason));
         }
@@ -174,7 +175,7 @@ impl Replay {
         toml::to_string(self).expect("every field of a replay can be serialized")
     }
 
-    /// Returns the replay as a text, after checking that it can be read and watched again.
+    /// Returns the replay as a text for storing. Checks that the text can be read and watched.
     ///
     /// # Errors
     /// [`ReplayError`] if the text could not be read or watched.
@@ -189,7 +190,7 @@ impl Replay {
         self.frames.len()
     }
 
-    /// Returns the input of a tick; an empty frame after the last.
+    /// Returns the input of a tick. After the last recorded tick, returns an empty frame.
     pub fn frame(&self, tick: usize) -> InputFrame {
         let row = self.frames.get(tick);
         row.map_or_else(InputFrame::default, |row| InputFrame::of_row(row))
@@ -205,7 +206,7 @@ impl Replay {
         is_same.then_some(level).ok_or(ReplayError::LevelChanged)
     }
 
-    /// Returns whether the replay was played in this level, under any name.
+    /// Returns whether the replay was played in `level`. The names may differ.
     pub fn is_of(&self, level: &Level) -> bool {
         self.level_hash == format!("{:016x}", level.hash())
     }
@@ -221,7 +222,7 @@ impl AnyRound {
     }
 }
 
-/// Returns the number of hashes for a number of ticks.
+/// Returns the number of hashes that a replay of `ticks` ticks has.
 fn marks(ticks: usize) -> usize {
     ticks.div_ceil(60)
 }
@@ -255,7 +256,7 @@ impl Playback {
         })
     }
 
-    /// Returns a playback of the same replay from its start.
+    /// Returns a new playback of the same replay, at its start.
     pub fn again(&self) -> Self {
         Self {
             replay: self.replay.clone(),
@@ -264,7 +265,7 @@ impl Playback {
         }
     }
 
-    /// Returns the round in its current state.
+    /// Returns the round that is played back, in its current state.
     pub fn round(&self) -> &AnyRound {
         &self.round
     }
@@ -274,7 +275,7 @@ impl Playback {
         self.tick >= self.replay.ticks()
     }
 
-    /// Plays a tick. After the last recorded tick the world continues without input.
+    /// Plays the next tick. After the last recorded tick, the world continues without input.
     ///
     /// # Errors
     /// [`ReplayError`] if the world diverges from the replay.

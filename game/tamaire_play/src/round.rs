@@ -1,4 +1,4 @@
-//! Rounds of a level.
+//! A round: one attempt at a level.
 
 use crate::{InputFrame, Level, PLAYERS, Progress};
 use fuwafuwa::{
@@ -8,16 +8,17 @@ use fuwafuwa::{
 use std::sync::Arc;
 
 /// Maximum speed of a hand's target [m/s]. A hand much faster than a wave in the body would throw the body
-/// aside before it can deform.
+/// aside before the body can deform.
 pub const TOP_SPEED: f32 = 6.0;
-/// Maximum distance between a hand and its target [m]. The coupling between them already has its maximum
-/// force there, so more distance would add nothing. A hand that suddenly comes free does not shoot far.
+/// Maximum distance between a hand and its target [m]. The coupling between hand and target reaches its
+/// maximum force within this distance. A larger one would only make a hand shoot far when it suddenly comes
+/// free.
 pub const LEASH: f32 = 0.4;
 
-/// Maximum number of recorded ticks: an hour. A round may last longer.
+/// Maximum number of ticks that are recorded: one hour. A round may last longer.
 pub const MAX_TICKS: usize = 60 * 60 * 60;
 
-/// Hand of a player, with three coordinates in 2D and in 3D.
+/// Hand of a player. Its vectors have three coordinates, also in 2D.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hand {
     /// Position [m].
@@ -46,14 +47,14 @@ impl<D: Dim> From<RigidBodyRef<'_, D>> for Hand {
     }
 }
 
-/// A round of a level.
+/// A round: one attempt at a level.
 #[derive(Clone, Debug)]
 pub struct Round<D: Dim> {
     level: Arc<Level>,
     world: World<D>,
     basket: Option<Shape<D>>,
     progress: Progress,
-    /// Hands of all players at the start.
+    /// Hands of all players at the start, whether or not the players have joined.
     starts: Vec<RigidBody<D>>,
     /// Hands of the players that have joined.
     players: Vec<RigidBodyHandle>,
@@ -72,7 +73,7 @@ impl<D: Dim> Round<D> {
         let hands = bodies.filter(|(_, body)| body.follows_target());
         let (hands, starts): (Vec<RigidBodyHandle>, Vec<RigidBody<D>>) =
             hands.map(|(hand, body)| (hand, body.definition())).unzip();
-        // The other hands are added when their players join.
+        // Removes all hands except the first. They return when their players join.
         for &hand in hands.iter().skip(1) {
             world.remove(hand).expect("the world has this hand");
         }
@@ -112,7 +113,7 @@ impl<D: Dim> Round<D> {
         report
     }
 
-    /// Returns the level.
+    /// Returns the level that is played.
     pub fn level(&self) -> &Arc<Level> {
         &self.level
     }
@@ -150,8 +151,8 @@ impl<D: Dim> Round<D> {
         &self.progress
     }
 
-    /// Returns the time for which enough mass has rested in the basket, as a share of the required time; 1
-    /// after the win.
+    /// Returns the time for which enough mass has rested in the basket, as a share of the required time.
+    /// After the win it is 1.
     pub fn share_held(&self) -> f32 {
         match self.progress.outcome {
             Some(_) => 1.0,
@@ -159,12 +160,12 @@ impl<D: Dim> Round<D> {
         }
     }
 
-    /// Returns the input of each tick until the win, at most [`MAX_TICKS`].
+    /// Returns the input of each tick up to the win, of at most [`MAX_TICKS`] ticks.
     pub fn frames(&self) -> &[InputFrame] {
         &self.frames
     }
 
-    /// Returns the world's hash after every sixtieth recorded tick, and after the winning one.
+    /// Returns the world's hash after every sixtieth recorded tick, and after the tick that won.
     pub fn hashes(&self) -> &[u64] {
         &self.hashes
     }
@@ -181,7 +182,7 @@ impl<D: Dim> Round<D> {
     }
 
     /// Returns the position nearest to `wish` that the target of a player's hand can reach in a tick. Without
-    /// a wish the target stays.
+    /// a `wish`, the target keeps its position.
     fn reachable(&self, player: usize, wish: Option<Vec3>) -> Vec3 {
         let hand = self.hand(self.players[player]);
         let target = hand.target_position().to_vec3();
@@ -198,7 +199,7 @@ impl<D: Dim> Round<D> {
     }
 }
 
-/// Returns the position nearest to `wish` within the distance `most` of `from`.
+/// Returns the position nearest to `wish` that is at most `most` [m] from `from`.
 fn near(from: Vec3, wish: Vec3, most: f32) -> Vec3 {
     let way = wish - from;
     let distance = way.length();
@@ -225,7 +226,7 @@ mod tests {
         }
         assert_eq!((round.frames.len(), round.hashes.len()), (MAX_TICKS, 1));
 
-        // A win after the end of the recording is not recorded.
+        // A win in a tick that was not recorded must not be recorded either.
         round.progress.outcome = Some(crate::Outcome {
             ticks: MAX_TICKS as u64 + 1,
             route: Route::Squeeze,

@@ -9,13 +9,13 @@ use serde::{Deserialize, Serialize};
 const RESTING: f32 = 0.4;
 /// Share of the total mass below which a piece is a crumb. A crumb outside the basket does not count as lost.
 pub const CRUMB: f32 = 0.002;
-/// Minimum of [`Progress::kept`] at which the bodies count as whole.
+/// Value of [`Progress::kept`] from which the bodies count as whole.
 const WHOLE: f32 = 0.99;
-/// Mean strain above which bodies at rest in the basket count as squeezed by the bars. The strain by the
-/// bodies' own weight is added to this limit.
+/// Mean strain above which the bars count as squeezing the bodies at rest in the basket. Before the
+/// comparison, the strain from the bodies' own weight is added to this limit.
 const SQUEEZED: f32 = 0.08;
-/// Interval between two evaluations of the strain [ticks]. They take time, and squeezing a body in lasts
-/// longer than this.
+/// Interval between two evaluations of the strain [ticks]. Evaluations take processor time, and pushing a
+/// body in lasts longer than the interval.
 const LOOK: u64 = 4;
 
 /// Progress of a round.
@@ -27,20 +27,21 @@ pub struct Progress {
     pub inside: f32,
     /// Share of the mass in the basket, at rest or moving.
     pub within: f32,
-    /// Sum of the masses of each body's largest piece, relative to this sum at the start. The sum at the
-    /// start is not the total mass, because a body may start in several pieces.
+    /// Sum of the masses of each body's largest piece, relative to the value of this sum at the start. That
+    /// value may be below the total mass, because a body may start in several pieces.
     pub kept: f32,
     /// Number of pieces.
     pub pieces: usize,
     /// Time for which enough mass has rested in the basket [s].
     pub held: f32,
-    /// Whether the content of the basket was free of squeezing by the bars at some moment since enough mass
-    /// has rested there. If it never was, a win with a torn body counts as [`Route::Mix`].
+    /// Whether the bars stopped squeezing the content of the basket at some moment of the current hold, the
+    /// time for which enough mass has rested there. If never, a win with a torn body counts as
+    /// [`Route::Mix`].
     pub relaxed: bool,
-    /// Outcome, if the round was won.
+    /// Outcome of the round; `None` before a win.
     pub outcome: Option<Outcome>,
     bodies: usize,
-    /// Mean strain at rest above which a body counts as squeezed.
+    /// Mean strain above which the bars count as squeezing a body at rest, own weight included.
     squeezed: f32,
     /// Sum of the masses of each body's largest piece at the start [kg].
     whole: f32,
@@ -50,17 +51,17 @@ pub struct Progress {
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outcome {
-    /// Number of ticks from the start.
+    /// Number of ticks from the start to the win.
     pub ticks: u64,
     /// Route of the win.
     pub route: Route,
-    /// Sum of the masses of each body's largest piece, relative to this sum at the start.
+    /// Sum of the masses of each body's largest piece, relative to the value of this sum at the start.
     pub kept: f32,
-    /// Share of the mass at rest in the basket.
+    /// Share of the total mass at rest in the basket.
     pub inside: f32,
     /// Number of pieces.
     pub pieces: usize,
-    /// Number of pieces with their centre outside the basket, except crumbs.
+    /// Number of pieces with their centre outside the basket. Crumbs do not count.
     pub lost: usize,
 }
 
@@ -141,7 +142,8 @@ impl Progress {
         }
     }
 
-    /// Returns the route by the result, not by the player's intention.
+    /// Returns the route of the win. It follows from the state of the bodies, not from the player's
+    /// intention.
     fn route(&self, lost: usize) -> Route {
         let is_whole = self.kept >= WHOLE && lost == 0;
         match (is_whole, self.relaxed) {
@@ -165,9 +167,9 @@ fn greatest(views: &[Vec<PieceView>]) -> f32 {
     greatest.sum()
 }
 
-/// Returns the largest mean strain of a body under its own weight. The estimate assumes a column as high as
-/// the body, of the body's material with the largest ratio of density to stiffness. The stress is ρ g h at
-/// the foot of the column and zero at the top.
+/// Returns an estimate of the largest mean strain of a body under its own weight. The estimate assumes a
+/// column as high as the body. The column has the material of the body with the largest ratio of density to
+/// stiffness. The stress is ρ g h at the foot of the column and zero at the top.
 fn own_strain<D: Dim>(world: &World<D>, views: &[Vec<PieceView>]) -> f32 {
     let gravity = world.config().gravity.to_vec3();
     let of = |body: &SoftBody<D>, pieces: &[PieceView]| {
@@ -189,7 +191,7 @@ fn total_mass<D: Dim>(world: &World<D>) -> f32 {
     bodies.map(|(_, body)| body.total_mass() as f32).sum()
 }
 
-/// Returns the mass of the nodes in a region [kg]: of those at rest, and of all.
+/// Returns the mass of the nodes at rest in a region, and the mass of all nodes in the region [kg].
 fn masses_inside<D: Dim>(world: &World<D>, region: &Shape<D>) -> (f32, f32) {
     let inside = |body: &SoftBody<D>| {
         let (mut resting, mut all) = (0.0, 0.0);
@@ -209,8 +211,8 @@ fn masses_inside<D: Dim>(world: &World<D>, region: &Shape<D>) -> (f32, f32) {
     bodies.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
 }
 
-/// Returns the mean strain of the elements in a region, weighted by volume. Counts only pieces of more than
-/// 50 elements with their centre in the region.
+/// Returns the mean strain of the elements in a region, weighted by volume. Only pieces with more than 50
+/// elements and with their centre in the region count.
 fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Shape<D>) -> f32 {
     let (mut sum, mut volume) = (0.0, 0.0);
     for ((_, body), pieces) in world.soft_bodies().zip(views) {
@@ -233,7 +235,8 @@ fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Sh
     if volume > 0.0 { sum / volume } else { 0.0 }
 }
 
-/// Returns whether a position is in a region. For a box, the shape of all baskets, this needs no square root.
+/// Returns whether a position is in a region. Avoids a square root for a box, which is the shape of all
+/// baskets.
 fn is_inside<D: Dim>(region: &Shape<D>, position: Row) -> bool {
     match *region {
         Shape::Box { centre, half } => {

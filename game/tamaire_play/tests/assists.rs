@@ -1,4 +1,4 @@
-//! Assists: with all of them, a bot wins every level by pushing the whole body into the basket.
+//! Test of the assists: with all of them, a bot wins every level by pushing the whole body into the basket.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use tamaire_play::{AnyRound, Assist, Bot, BotKind, Level, Outcome, Route};
 /// Time limit of a round: a minute [ticks].
 const MINUTE: usize = 60 * 60;
 
-/// Returns the outcome of a round of a level with `assists`.
+/// Lets a bot push the body into the basket of a level with `assists`. Returns the outcome if the bot wins.
 fn squeezed(level: &Level, assists: &[Assist], seed: u64) -> Option<Outcome> {
     let easy = level.assisted(&BTreeSet::from_iter(assists.iter().copied()));
     let mut round = AnyRound::new(Arc::new(easy.unwrap()));

@@ -26,7 +26,7 @@ fn arena_is_closed_on_every_side() {
     }
 }
 
-/// Checks that all sides of the arena are covered by rigid bodies.
+/// Checks that rigid bodies cover all sides of the arena, so that nothing can leave it.
 fn is_closed<D: Dim>(id: &str) {
     const STEPS: i32 = 20;
     let level = Arc::new(Level::open(id).unwrap());
@@ -77,7 +77,7 @@ fn stays_whole_and_in_the_room<D: Dim>(id: &str, ticks: usize) {
     }
 }
 
-/// Returns a replay of `ticks` random ticks with both hands.
+/// Returns a replay of a round in which both hands move at random for `ticks` ticks.
 fn played<D: Dim>(id: &str, ticks: usize) -> Replay {
     let mut round = Round::<D>::new(Arc::new(Level::open(id).unwrap()));
     let mut bot = Bot::new(BotKind::Random, 3);

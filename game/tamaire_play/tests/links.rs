@@ -1,4 +1,4 @@
-//! Rounds and levels as links. `--nocapture` prints their lengths.
+//! Tests of links to rounds and levels. With `--nocapture` they print the lengths of the links.
 
 use fastrand::Rng;
 use fuwafuwa::Vec3;
@@ -26,7 +26,7 @@ fn changed(id: &str, from: &str, to: &str) -> Arc<Level> {
     Arc::new(Level::read("mine.toml", text.as_bytes(), &nothing).unwrap())
 }
 
-/// Lets a bot play at most `ticks` ticks.
+/// Lets a bot play a round for at most `ticks` ticks, and returns the replay.
 fn played(level: &Arc<Level>, kind: BotKind, seed: u64, ticks: usize) -> Replay {
     let mut round = AnyRound::new(level.clone());
     round.play(&mut Bot::new(kind, seed), ticks);
@@ -59,7 +59,7 @@ fn frames(replay: &Replay) -> Vec<InputFrame> {
     (0..replay.ticks()).map(|tick| replay.frame(tick)).collect()
 }
 
-/// Checks that a round is restored from its link, and returns the link.
+/// Checks that reading the link to a round restores the round. Returns the link.
 fn check(replay: &Replay) -> String {
     let link = replay.link().unwrap();
     let read = read_round(&link);
@@ -94,9 +94,9 @@ fn link_of_a_typical_round_is_short_and_playable() {
     }
 }
 
-/// Returns the positions of a hand that plays by mouse: minimum-jerk strokes [Flash 1985] and rests, with a
-/// tremor of about 9 Hz. They are sampled at `rate` [Hz] and rounded to multiples of `grain`, in units of
-/// 1/8192 m.
+/// Returns input frames of a simulated mouse player: minimum-jerk strokes [Flash 1985] and rests, with a
+/// tremor of about 9 Hz. The positions are sampled at `rate` [Hz] and rounded to multiples of `grain`, in
+/// units of 1/8192 m.
 fn hand(seed: u64, seconds: usize, rate: f32, grain: f32) -> Vec<InputFrame> {
     const STEPS: usize = 1000;
     let mut random = Rng::with_seed(seed);
@@ -122,7 +122,7 @@ fn hand(seed: u64, seconds: usize, rate: f32, grain: f32) -> Vec<InputFrame> {
         }));
         here = there;
     }
-    // The tremor is the output of a resonator driven by noise.
+    // Simulates the tremor as the output of a 9 Hz resonator driven by noise.
     let (pull, decay) = (
         2.0 * (std::f32::consts::TAU * 9.0 / STEPS as f32).cos(),
         0.99,
@@ -137,7 +137,7 @@ fn hand(seed: u64, seconds: usize, rate: f32, grain: f32) -> Vec<InputFrame> {
         }
     }
     let frame = |tick: usize| {
-        // The position at the last time the mouse was read.
+        // A frame repeats the position at the last time when the mouse was read.
         let read = (tick as f32 / 60.0 * rate).floor() / rate;
         let [x, y] = way[(read * STEPS as f32) as usize];
         let rounded = |k: f32| (k * 8192.0 / grain).round() * grain / 8192.0;
@@ -245,7 +245,7 @@ fn link_contains_a_custom_level() {
     let replay = played(&level, BotKind::Squeeze, 1, 130);
     watch(read_round(&check(&replay))).unwrap();
 
-    // A custom level with the name of a built-in one, which it must not replace.
+    // A custom level with the name of a built-in level. Its link must not give the built-in level.
     let mut other = (*level).clone();
     other.id = "classic".into();
     let read = read_level(&other.link().unwrap());
@@ -269,7 +269,7 @@ fn link_contains_pictures_and_models_that_fit() {
         assert_eq!(read_level(&link).id, "tom.toml");
     }
 
-    // Noise cannot be compressed.
+    // A picture of noise cannot be compressed, so its link must be too long.
     let level = Arc::new(made_of("noise.png", &noise()));
     let replay = played(&level, BotKind::Idle, 1, 1);
     for refused in [level.link(), replay.link()] {
@@ -280,7 +280,7 @@ fn link_contains_pictures_and_models_that_fit() {
     }
 }
 
-/// Returns a picture of random pixels.
+/// Returns a picture of random pixels, as a PNG file.
 fn noise() -> Vec<u8> {
     const SIDE: u32 = 128;
     let mut random = Rng::with_seed(1);

@@ -1,23 +1,24 @@
-//! The generated models of the built-in levels.
+//! Tests that the model files of the built-in levels are as generated here.
 
 use std::path::PathBuf;
 use tamaire_play::{InputFrame, Level, Replay, Round};
 
-/// Returns a crème caramel, 26 voxels wide and 16 high: custard (colour 1) under caramel (colour 2).
+/// Returns the model of a crème caramel, 26 voxels wide and 16 high: custard (colour 1) under caramel (colour
+/// 2).
 fn pudding() -> Vec<u8> {
     const ACROSS: u8 = 26;
     const HIGH: u8 = 16;
     let mut voxels = Vec::new();
     for z in 0..HIGH {
         let height = (f32::from(z) + 0.5) / f32::from(HIGH);
-        // Truncated cone with a rounded upper edge.
+        // The pudding is a truncated cone with a rounded upper edge.
         let rounding = (height - 0.85).max(0.0) / 0.15;
         let half = 0.5 * f32::from(ACROSS);
         let radius = half * (1.0 - 0.28 * height - 0.125 * rounding * rounding);
         for (y, x) in (0..ACROSS).flat_map(|y| (0..ACROSS).map(move |x| (y, x))) {
             let [a, b] = [x, y].map(|k| f32::from(k) + 0.5 - half);
             let from_axis = (a * a + b * b).sqrt();
-            // The caramel has run down a little at the rim.
+            // Lowers the boundary of the caramel near the rim, as if it had run down a little.
             let caramel = 0.84 - 0.12 * (from_axis / (0.75 * half)).powi(4).min(1.0);
             if from_axis < radius {
                 voxels.push([x, y, z, 1 + u8::from(height > caramel)]);
@@ -30,7 +31,7 @@ fn pudding() -> Vec<u8> {
     model([ACROSS, ACROSS, HIGH], &voxels, &colours)
 }
 
-/// Returns a MagicaVoxel file with a size, voxels with colour indices from 1, and a palette.
+/// Returns the bytes of a MagicaVoxel file with a size, voxels with colour indices from 1, and a palette.
 fn model(size: [u8; 3], voxels: &[[u8; 4]], colours: &[[u8; 4]; 256]) -> Vec<u8> {
     let size = size.map(|extent| u32::from(extent).to_le_bytes());
     let count = (voxels.len() as u32).to_le_bytes();
@@ -53,7 +54,7 @@ fn chunk(name: &[u8; 4], contents: &[u8], children: &[u8]) -> Vec<u8> {
     [name, lengths.as_flattened(), contents, children].concat()
 }
 
-/// Fails for every file: the models name none.
+/// Loader that fails for every file, because the models name no files.
 fn nothing(_: &str) -> std::io::Result<Vec<u8>> {
     Err(std::io::ErrorKind::NotFound.into())
 }

@@ -1,4 +1,4 @@
-//! Writes WAV files of all sounds of the game.
+//! Example that writes WAV files of all sounds of the game to a folder.
 //!
 //! `cargo run --release -p tamaire_sound --example listen -- folder`
 
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Presses harder and harder, then rubs back and forth, then releases.
+/// A hand presses harder and harder, then rubs back and forth, then releases.
 fn press(tick: u32, _: &mut Synth) -> Soundscape {
     let time = tick as f32 / 60.0;
     let force = if time < 3.5 {
@@ -122,7 +122,7 @@ fn wobble(tick: u32, _: &mut Synth) -> Soundscape {
     }
 }
 
-/// A hold that is almost complete, lost, and then completed.
+/// The body rests in the basket for almost the required time, leaves, and then rests for the whole time.
 fn hold(tick: u32, synth: &mut Synth) -> Soundscape {
     let hold = match tick {
         0..40 => tick as f32 / 60.0,

@@ -1,4 +1,4 @@
-//! Measures the processor time of the sound while it plays, as a share of one core.
+//! Measures how much processor time the synthesiser takes while it plays, as a share of one core.
 //!
 //! `cargo run --release -p tamaire_sound --example load`
 

@@ -18,7 +18,7 @@ fn main() -> io::Result<()> {
     let mut told = 0;
     for block in 0..SECONDS * RATE / MOST_FRAMES {
         let mut message = Message::default();
-        // Messages at 60 Hz, as from the game.
+        // Sends messages 60 times a second, as the game does.
         if told * RATE <= block * MOST_FRAMES * 60 {
             tell(told, &mut message);
             told += 1;
@@ -35,8 +35,8 @@ fn main() -> io::Result<()> {
     out.flush()
 }
 
-/// Adds the sounds of a tick: hands rub for five seconds, then hold; pieces tear off; the round is won at the
-/// end.
+/// Adds the sounds of a tick. Hands rub for five seconds, then the body rests in the basket; pieces tear off;
+/// the round is won at the end.
 fn tell(tick: usize, message: &mut Message) {
     let seconds = tick as f32 / 60.0;
     let stroke = (3.0 * seconds).sin();

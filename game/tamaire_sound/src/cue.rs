@@ -2,11 +2,12 @@
 
 use crate::part::clean;
 
-/// Event with a single sound. Numbers out of range are clamped, and NaN becomes 0.
+/// Event that causes one momentary sound. Numbers out of range are clamped, and NaN becomes 0.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Cue {
-    /// A body hit a rigid body. May be sent in every tick of a contact: only a sudden rise is heard.
+    /// A body hit a rigid body. May be sent in every tick of a contact: only a sudden rise of the impulse is
+    /// heard.
     Thud {
         /// Normal impulse over the tick [N s]; 1 is a soft landing, 30 a heavy one.
         impulse: f32,
@@ -17,14 +18,14 @@ pub enum Cue {
     Tear {
         /// Released elastic energy [J]; 0.1 for a small split, 10 for a rip through the whole body.
         energy: f32,
-        /// Position, from −1 to 1.
+        /// Position, from −1 at the left edge of the picture to 1 at the right.
         x: f32,
     },
     /// A crumb landed.
     Crumb {
         /// Impact speed [m/s], usually about 1.
         speed: f32,
-        /// Position, from −1 to 1.
+        /// Position, from −1 at the left edge of the picture to 1 at the right.
         x: f32,
     },
     /// The round was won.
@@ -33,7 +34,7 @@ pub enum Cue {
     Menu(Menu),
 }
 
-/// Way in which a round was won.
+/// Route by which a round was won.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Route {
@@ -41,7 +42,7 @@ pub enum Route {
     Squeeze,
     /// Parts were torn off until the body fitted.
     Shave,
-    /// A mix of both.
+    /// Squeezed in after parts were torn off.
     Mix,
 }
 
@@ -51,9 +52,9 @@ pub enum Route {
 pub enum Menu {
     /// Another entry was selected.
     Move,
-    /// The entry was confirmed.
+    /// The selected entry was confirmed.
     Confirm,
-    /// Back to the previous screen.
+    /// The player went back to the previous screen.
     Back,
 }
 

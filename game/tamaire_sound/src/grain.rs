@@ -1,11 +1,11 @@
-//! Short sounds, the building blocks of all cues and of the music.
+//! Grains: short sounds from which all cues and the music are composed.
 
 use crate::part::{Band, Noise, Stereo, Tone, panned};
 
 /// Maximum number of simultaneous grains.
 pub(crate) const MOST_VOICES: usize = 64;
 
-/// Samples rendered per block; filters are retuned once per block.
+/// Number of samples in a block. Filters are retuned once per block.
 pub(crate) const CHUNK: usize = 32;
 
 /// Group of sounds with its own volume.
@@ -22,31 +22,33 @@ pub(crate) const BUSES: usize = 3;
 /// A block of samples per bus.
 pub(crate) type Buses = [[Stereo; CHUNK]; BUSES];
 
-/// A tone and a band of noise with a common envelope and pitch glide.
+/// Short sound: a tone and a band of noise with a common envelope and pitch glide.
 #[derive(Copy, Clone, Debug)]
 pub(crate) struct Grain {
     pub(crate) bus: Bus,
     /// Delay before the start [s].
     pub(crate) delay: f32,
-    /// Rise time to the maximum [s]. Less than 0.001 clicks.
+    /// Rise time from silence to the maximum amplitude [s]. A time below 0.001 is heard as a click.
     pub(crate) attack: f32,
-    /// Decay time from the maximum to 1/e [s].
+    /// Time in which the amplitude decays from its maximum to 1/e of it [s].
     pub(crate) decay: f32,
     /// Maximum amplitude, 0 to 1.
     pub(crate) gain: f32,
-    /// Position, from −1 at the left to 1 at the right.
+    /// Position, from −1 at the left edge of the picture to 1 at the right.
     pub(crate) x: f32,
-    /// Initial and final frequency [Hz].
+    /// Initial and final frequency of the tone [Hz].
     pub(crate) pitch: [f32; 2],
-    /// Time constant of the glide between both frequencies [s].
+    /// Time constant of the glide from the initial to the final frequency [s].
     pub(crate) glide: f32,
-    /// Amplitude of the tone, 0 to 1, and its overtone content, from 0 (sine) to 1.
+    /// Amplitude of the tone, 0 to 1.
     pub(crate) tone: f32,
+    /// Overtone content of the tone, from 0 (sine) to 1 (almost a sawtooth).
     pub(crate) edge: f32,
-    /// Amplitude of the noise, 0 to 1; centre frequency of its band, relative to that of the tone; and ratio
-    /// of this centre frequency to the bandwidth.
+    /// Amplitude of the noise, 0 to 1.
     pub(crate) noise: f32,
+    /// Centre frequency of the noise band, as a multiple of the tone's frequency.
     pub(crate) above: f32,
+    /// Ratio of the noise band's centre frequency to its bandwidth.
     pub(crate) sharpness: f32,
 }
 
@@ -74,7 +76,7 @@ impl Default for Grain {
 pub(crate) struct Voices {
     rate: f32,
     voices: Vec<Voice>,
-    /// Last samples of grains that were cut off; they fade out, which avoids clicks.
+    /// Last sample of cut-off grains, per bus. It fades out, because a sudden end would click.
     cut: [Stereo; BUSES],
 }
 
@@ -91,8 +93,8 @@ impl Voices {
         self.voices.len()
     }
 
-    /// Starts a grain. With [`MOST_VOICES`] grains it replaces the faintest of them, unless the new grain is
-    /// fainter still.
+    /// Starts a grain. If [`MOST_VOICES`] grains are present, replaces the faintest one, or drops the new
+    /// grain if that is fainter still.
     pub(crate) fn start(&mut self, grain: Grain) {
         let voice = Voice::new(grain, self.rate);
         if self.voices.len() < MOST_VOICES {
@@ -111,7 +113,7 @@ impl Voices {
         }
     }
 
-    /// Adds all grains to the first `count` samples of each bus.
+    /// Adds the next `count` samples of all grains to the buses.
     pub(crate) fn add(&mut self, noise: &mut Noise, buses: &mut Buses, count: usize) {
         for voice in &mut self.voices {
             let bus = voice.grain.bus as usize;
@@ -138,17 +140,21 @@ impl Voices {
 struct Voice {
     grain: Grain,
     sides: Stereo,
-    /// Samples until the start.
+    /// Number of samples until the grain starts.
     wait: u32,
-    /// Current envelope, and whether it is still rising.
+    /// Current value of the envelope, 0 to 1.
     envelope: f32,
+    /// Whether the envelope is still rising.
     rises: bool,
-    /// Increment per sample of a rising envelope, and factor per sample of a falling one.
+    /// Increment of the envelope per sample while it rises.
     rise: f32,
+    /// Factor on the envelope per sample while it falls.
     fall: f32,
-    /// Frequency [cycles/sample]: current, final, and factor of their difference per sample.
+    /// Current frequency [cycles/sample].
     frequency: f32,
+    /// Final frequency [cycles/sample].
     frequency_end: f32,
+    /// Factor per sample on the difference between the current and the final frequency.
     approach: f32,
     tone: Tone,
     band: Band,
@@ -175,7 +181,8 @@ impl Voice {
         }
     }
 
-    /// Returns the current loudness. A grain that waits or rises counts with its future maximum.
+    /// Returns the loudness of the grain: its current amplitude, or its future maximum while it waits or
+    /// rises.
     fn loudness(&self) -> f32 {
         self.grain.gain * if self.rises { 1.0 } else { self.envelope }
     }

@@ -1,28 +1,31 @@
-//! Continuous sounds.
+//! Continuous sounds: squeaking hands, the wobble of the body, and the chord while the body rests in the
+//! basket.
 
 use crate::part::{Band, Drift, Noise, Smooth, Stereo, Tone, note, panned, share};
 use crate::soundscape::Press;
 use std::f32::consts::{PI, TAU};
 
-/// Sound of a hand that rubs and squashes rubber: a squeak with a pitch that follows the force, through a
-/// mouth-like filter that opens with the force, and wet noise of the displaced material.
+/// Sound of a hand that rubs and squashes rubber. It consists of a squeak and of wet noise from the displaced
+/// material. The force raises the pitch of the squeak and opens a mouth-like filter.
 pub(crate) struct Squeak {
     rate: f32,
-    /// Smoothed force, slip speed and position.
+    /// Contact force, smoothed: 0 for none, 0.5 for a usual force, towards 1 for large ones.
     firm: Smooth,
+    /// Slip speed, smoothed and scaled like `firm`.
     slide: Smooth,
     x: Smooth,
-    /// Delayed copy of `firm`; the difference shows how the force changes.
+    /// Delayed copy of `firm`. The difference between both shows how the force changes.
     late: Smooth,
     stir: Smooth,
-    /// Phase of the present squeak, 0 to 1, and squeaks per second at very fast slip.
+    /// Phase of the current squeak, 0 to 1.
     squeak: f32,
+    /// Squeaks per second at very fast slip.
     hurry: f32,
-    /// Modulation within a squeak: stick-slip of the rubber.
+    /// Modulation within a squeak, which imitates the stick-slip of rubber.
     jerk: Drift,
     tone: Tone,
     mouth: Band,
-    /// Two filters in a row, to suppress hiss above the band.
+    /// Two band-pass filters in series for the wet noise. One alone would let hiss above its band through.
     wet: [Band; 2],
 }
 
@@ -77,7 +80,7 @@ impl Squeak {
             self.stir.target = (4.0 * (firm - self.late.next())).abs().min(1.0);
             let stir = self.stir.next();
             let moves = 1.0 - (1.0 - slide) * (1.0 - 0.6 * stir);
-            // One squeak per few centimetres, with random spacing.
+            // A slipping hand squeaks once every few centimetres, with random spacing.
             self.squeak += slide * self.hurry / self.rate;
             if self.squeak >= 1.0 {
                 self.squeak -= 1.0;
@@ -99,13 +102,14 @@ impl Squeak {
     }
 }
 
-/// Wobble of a mochi-like body: a weight on a spring follows the squash, overshoots, and sounds according to
-/// its speed.
+/// Wobble of a mochi-like body: a simulated weight on a spring follows the squash and overshoots. Its speed
+/// sets the loudness.
 pub(crate) struct Wobble {
     rate: f32,
     squash: Smooth,
-    /// Position of the weight, in units of squash, and its speed [1/s].
+    /// Position of the weight, as a value of squash.
     place: f32,
+    /// Speed of the weight [1/s].
     speed: f32,
     gain: Smooth,
     tone: Tone,
@@ -128,8 +132,9 @@ impl Wobble {
     }
 
     pub(crate) fn add(&mut self, out: &mut [Stereo]) {
-        /// Angular frequency [rad/s] and damping ratio.
+        /// Angular frequency of the weight on its spring [rad/s].
         const SWING: f32 = TAU * 5.5;
+        /// Damping ratio of the weight on its spring.
         const DAMPING: f32 = 0.16;
         let still = self.squash.value == self.squash.target && self.gain.is_silent();
         if still && self.speed.abs() < 1e-3 && (self.place - self.squash.value).abs() < 1e-4 {
@@ -140,7 +145,7 @@ impl Wobble {
             let push = SWING * SWING * away - 2.0 * DAMPING * SWING * self.speed;
             self.speed += push / self.rate;
             self.place += self.speed / self.rate;
-            // Squared, so that a slight tremor is not heard.
+            // Squares the speed, so that a slight tremor is not heard.
             let quick = self.speed * self.speed;
             self.gain.target = share(quick, 3.0);
             let frequency = 88.0 * (1.0 + 0.9 * self.place) / self.rate;
@@ -154,7 +159,8 @@ impl Wobble {
 pub(crate) struct Chord {
     rate: f32,
     hold: Smooth,
-    /// Highest hold reached; kept after the hold is lost until the sound has faded.
+    /// Highest value of `hold` so far, which sets the pitch. If the body leaves the basket, the pitch stays
+    /// until the sound has faded out.
     risen: f32,
     shimmer: f32,
     tones: [Tone; 4],
@@ -176,10 +182,12 @@ impl Chord {
     }
 
     pub(crate) fn add(&mut self, out: &mut [Stereo]) {
-        /// MIDI note of the lowest voice (G), its rise to the C with which the squeeze jingle begins, and the
-        /// intervals of the voices above the lowest [semitones].
+        /// MIDI note of the lowest voice at the start: G.
         const LOWEST: f32 = 55.0;
+        /// Rise of all voices during the hold [semitones]. The lowest ends at C, the first note of the
+        /// squeeze jingle.
         const RISE: f32 = 5.0;
+        /// Intervals of the voices above the lowest one [semitones].
         const ABOVE: [f32; 4] = [0.0, 4.0, 7.0, 12.0];
         if self.hold.is_silent() {
             self.risen = 0.0;

@@ -1,11 +1,12 @@
 //! Synthesised sounds of tamaire. The crate does not depend on the engine: in each frame the game reports the
 //! sounds to play.
 //!
-//! - [`Soundscape`]: continuous sounds: pressing and slipping hands, the squash of the body, the time that it
-//!   has rested in the basket, and music.
+//! - [`Soundscape`]: continuous sounds: pressing and slipping hands, the squash of the body, its rest in the
+//!   basket, and music.
 //! - [`Cue`]: momentary sounds: thud, tear, crumb, menu, win.
-//! - [`Synth`]: renders both to samples. It is deterministic: equal calls give equal samples.
-//! - [`Message`]: the calls of a remote synthesiser as bytes (feature `serde`).
+//! - [`Synth`]: renders soundscapes and cues to samples. It is deterministic: equal calls give equal samples.
+//! - [`Message`]: calls of [`Synth`] as bytes, for a synthesiser in another process or thread (feature
+//!   `serde`).
 //! - [`Speaker`]: playback on the sound device (feature `output`).
 //!
 //! ```

@@ -7,7 +7,7 @@ pub(crate) struct Room {
     lines: [Line; 4],
 }
 
-/// Delay line with a low-pass filter.
+/// Delay line of the reverb, with a low-pass filter.
 struct Line {
     samples: Vec<f32>,
     place: usize,
@@ -16,7 +16,7 @@ struct Line {
 
 impl Room {
     pub(crate) fn new(rate: f32) -> Self {
-        // The delays have no small common multiple, so that no pitch stands out.
+        // The delays of the four lines have no small common multiple; otherwise some pitch would stand out.
         let line = |seconds: f32| Line {
             samples: vec![0.0; (seconds * rate) as usize],
             place: 0,
@@ -30,7 +30,8 @@ impl Room {
     /// Returns the reverberation for an input sample.
     pub(crate) fn next(&mut self, dry: Stereo) -> Stereo {
         let [a, b, c, d] = self.lines.each_ref().map(|line| line.samples[line.place]);
-        // Rows of a Hadamard matrix: each line feeds all lines, without a change of total energy.
+        // Mixes the lines by a Hadamard matrix, one row per line. Each line feeds all lines, and the total
+        // energy stays.
         let mixed = [a + b + c + d, a - b + c - d, a + b - c - d, a - b - c + d];
         for (place, (line, mixed)) in self.lines.iter_mut().zip(mixed).enumerate() {
             line.dull += 0.55 * (mixed - line.dull);
@@ -44,8 +45,8 @@ impl Room {
     }
 }
 
-/// High-pass filter that removes inaudible low frequencies, such as the non-zero mean of a tone with many
-/// overtones. They would make the limiter lower the volume.
+/// High-pass filter that removes inaudible low frequencies. For example, a tone with many overtones has a
+/// non-zero mean. Without the filter, such a mean would make the limiter lower the volume.
 #[derive(Default)]
 pub(crate) struct HighPass {
     mean: Stereo,
@@ -62,7 +63,7 @@ impl HighPass {
     }
 }
 
-/// Limiter: fast attack without a jump, slow release.
+/// Limiter: lowers the volume fast but without a jump, and raises it slowly.
 pub(crate) struct Limiter {
     peak: f32,
     attack: f32,
@@ -81,7 +82,7 @@ impl Limiter {
 
     /// Returns a sample within −1 to 1.
     pub(crate) fn next(&mut self, sample: Stereo) -> Stereo {
-        /// Level up to which nothing is changed.
+        /// Level up to which samples pass unchanged.
         const CLEAN: f32 = 0.7;
         let loud = sample[0].abs().max(sample[1].abs());
         let pace = if loud > self.peak {
@@ -91,7 +92,7 @@ impl Limiter {
         };
         self.peak += pace * (loud - self.peak);
         let gain = CLEAN / self.peak.max(CLEAN);
-        // Peaks too fast for the attack are soft-clipped.
+        // Soft-clips peaks that come faster than the limiter lowers the volume.
         let bent = |side: f32| {
             let over = (gain * side.abs() - CLEAN).max(0.0) / (1.0 - CLEAN);
             (gain * side.abs()).min(CLEAN) + (1.0 - CLEAN) * over.tanh()

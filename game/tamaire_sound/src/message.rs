@@ -1,17 +1,17 @@
-//! Messages from a game to a remote synthesiser, such as one in an audio worklet. They use postcard's format,
-//! entry after entry, so that the receiver needs no memory allocation.
+//! Messages from a game to a synthesiser elsewhere, such as in an audio worklet. Entries in postcard's format
+//! follow one another, so that the receiver reads them without allocating memory.
 
 use crate::cue::Cue;
 use crate::soundscape::{Soundscape, Volumes};
 use crate::synth::Synth;
 use serde::{Deserialize, Serialize};
 
-/// Space reserved for menus and jingles [bytes]. They are few and must not be lost, so a thud, tear or crumb
-/// is dropped if less space would remain.
+/// Space in a message reserved for menu sounds and jingles [bytes]. These are few and must not be lost. A
+/// thud, tear or crumb is dropped if it would leave less space.
 const FOR_MENUS: usize = 512;
 
-/// Space reserved for soundscapes and volumes [bytes], several times the size of a soundscape. A menu or
-/// jingle cue is dropped if less would remain.
+/// Space in a message reserved for soundscapes and volumes [bytes], several times the size of a soundscape. A
+/// menu sound or jingle is dropped if it would leave less space.
 const FOR_WHAT_LASTS: usize = 128;
 
 /// Upper bound of the size of an entry [bytes].
@@ -25,12 +25,12 @@ enum Entry {
     Cue(Cue),
 }
 
-/// Calls for a synthesiser, collected over a frame.
+/// Calls of a [`Synth`] as bytes, collected over a frame.
 #[derive(Default)]
 pub struct Message(Vec<u8>);
 
 impl Message {
-    /// Maximum size [bytes]; entries beyond it are dropped.
+    /// Maximum size of a message [bytes]. Entries that do not fit are dropped.
     pub const MOST_BYTES: usize = 4096;
 
     /// Records a call of [`Synth::set_soundscape`].

@@ -1,14 +1,15 @@
-//! Background music: slow chords and a few random notes that fit them. It never repeats.
+//! Background music: slow chords with a few random notes that fit the chords. The music never repeats exactly.
 
 use crate::grain::{Bus, Grain, Voices};
 use crate::part::{Noise, note};
 use crate::recipe::{bell, strike};
 
-/// Duration of a beat [s], and beats per chord.
+/// Duration of a beat [s].
 const BEAT: f32 = 0.42;
+/// Number of beats per chord.
 const BEATS: u32 = 12;
 
-/// Notes of the chords C, A minor, F and G, in wide spacing.
+/// MIDI notes of the chords C, A minor, F and G, widely spaced.
 const CHORDS: [[f32; 3]; 4] = [
     [48.0, 55.0, 64.0],
     [45.0, 52.0, 60.0],
@@ -16,16 +17,16 @@ const CHORDS: [[f32; 3]; 4] = [
     [43.0, 55.0, 62.0],
 ];
 
-/// Notes that fit all chords.
+/// MIDI notes of the melody. They fit all chords.
 const SCALE: [f32; 6] = [67.0, 69.0, 72.0, 74.0, 76.0, 79.0];
 
-/// Generator of the notes.
+/// Generator of the background music.
 pub(crate) struct Music {
     rate: f32,
-    /// Samples until the next beat.
+    /// Number of samples until the next beat.
     left: f32,
     beat: u32,
-    /// Index of the last note in [`SCALE`].
+    /// Index in [`SCALE`] of the last melody note.
     place: i32,
 }
 
@@ -39,7 +40,7 @@ impl Music {
         }
     }
 
-    /// Starts the notes of the next `count` samples.
+    /// Starts the notes that begin within the next `count` samples.
     pub(crate) fn play(&mut self, noise: &mut Noise, voices: &mut Voices, count: usize) {
         if self.left < count as f32 {
             let delay = self.left.max(0.0) / self.rate;
@@ -49,7 +50,7 @@ impl Music {
                     voices.start(pad(*number, delay, 0.6 * (place as f32 - 1.0)));
                 }
             }
-            // Notes are more likely on the beat.
+            // Probability of a melody note on each of four beats, highest on the first.
             let chance = [0.55, 0.15, 0.35, 0.2][self.beat as usize % 4];
             if noise.between(0.0, 1.0) < chance {
                 let walk = noise.between(-2.5, 2.5).round() as i32;
@@ -74,7 +75,7 @@ impl Music {
     }
 }
 
-/// Note that swells and fades over a whole chord.
+/// Returns a note of a chord. The note becomes louder over the first half of the chord and then fades.
 fn pad(number: f32, delay: f32, x: f32) -> Grain {
     let chord = BEAT * BEATS as f32;
     Grain {

@@ -1,4 +1,4 @@
-//! Basic building blocks: noise, tones, filters, and smoothed values.
+//! Building blocks of sounds: noise, tones, filters, and smoothed values.
 
 use std::f32::consts::{PI, TAU};
 
@@ -14,13 +14,13 @@ pub(crate) fn clean(value: f32, low: f32, high: f32) -> f32 {
     }
 }
 
-/// Maps an amount to 0..1: 0 for 0, 0.5 for `usual`, towards 1 for large amounts.
+/// Maps an amount to the range 0 to 1: 0 to 0, `usual` to 0.5, large amounts to almost 1.
 pub(crate) fn share(amount: f32, usual: f32) -> f32 {
     amount / (amount + usual)
 }
 
-/// Returns the gains of left and right for a position `x`, −1 to 1, at equal power. Neither side becomes
-/// silent, which would be tiring with headphones.
+/// Returns the gains of the left and the right channel for a position `x`, −1 to 1, at equal total power.
+/// Neither channel becomes silent, because that would be tiring with headphones.
 pub(crate) fn panned(x: f32) -> Stereo {
     let angle = PI / 4.0 * (1.0 + 0.7 * x);
     [angle.cos(), angle.sin()]
@@ -39,7 +39,7 @@ impl Noise {
         Self(0x2545_f491)
     }
 
-    /// Returns a number from −1 to 1.
+    /// Returns a random number from −1 to 1.
     pub(crate) fn next(&mut self) -> f32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 17;
@@ -47,13 +47,13 @@ impl Noise {
         self.0 as i32 as f32 / 2_147_483_648.0
     }
 
-    /// Returns a number from `low` to `high`.
+    /// Returns a random number from `low` to `high`.
     pub(crate) fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * (0.5 + 0.5 * self.next())
     }
 }
 
-/// Value that follows its target without a jump.
+/// Value that approaches its target exponentially, without a jump.
 #[derive(Copy, Clone)]
 pub(crate) struct Smooth {
     pub(crate) value: f32,
@@ -73,7 +73,8 @@ impl Smooth {
 
     pub(crate) fn next(&mut self) -> f32 {
         let left = self.target - self.value;
-        // Reaches the target exactly, so that silence is exact: 0.00001 is 100 dB below full scale.
+        // Sets the value to the target once both are within 1e-5 (100 dB below full scale), so that silence
+        // is exact.
         self.value = if left.abs() < 1e-5 {
             self.target
         } else {
@@ -82,14 +83,14 @@ impl Smooth {
         self.value
     }
 
-    /// Returns whether the value is zero and stays zero.
+    /// Returns whether the value and its target are zero.
     pub(crate) fn is_silent(&self) -> bool {
         self.value == 0.0 && self.target == 0.0
     }
 }
 
-/// Sine with phase feedback: a larger `edge` approaches a sawtooth, with overtones that fall off before they
-/// alias [Tomisawa 1981].
+/// Sine oscillator with phase feedback [Tomisawa 1981]. A larger `edge` brings the wave closer to a sawtooth,
+/// with overtones that become faint before they alias.
 #[derive(Copy, Clone, Default)]
 pub(crate) struct Tone {
     /// Phase [cycles], 0 to 1.
@@ -98,10 +99,12 @@ pub(crate) struct Tone {
 }
 
 impl Tone {
-    /// Returns the next sample. `frequency` in cycles per sample, `edge` from 0 (sine) to 1.
+    /// Returns the next sample, at `frequency` [cycles/sample]. `edge` is the overtone content, from 0 (sine)
+    /// to 1.
     pub(crate) fn next(&mut self, frequency: f32, edge: f32) -> f32 {
         self.phase = (self.phase + frequency).fract();
-        // Feeds back a running mean; the last sample alone oscillates at high frequencies.
+        // Feeds back a running mean of samples, because feedback of the last sample alone oscillates at high
+        // frequencies.
         let out = (TAU * self.phase + edge * self.last).sin();
         self.last = 0.5 * (self.last + out);
         out
@@ -125,11 +128,12 @@ impl Band {
         self.width = 1.0 / sharpness;
         let first = 1.0 / (1.0 + g * (g + self.width));
         self.gains = [first, g * first, g * g * first];
-        // Such a band passes π·frequency/sharpness of the power of white noise.
+        // A band-pass lets π·frequency/sharpness of the power of white noise through. `lift` compensates for
+        // the loss.
         self.lift = (sharpness / (PI * frequency.max(1e-4))).sqrt();
     }
 
-    /// Returns band-passed noise at the level of the unfiltered noise.
+    /// Returns white noise after the band-pass, amplified to the level of the unfiltered noise.
     pub(crate) fn hiss(&mut self, noise: &mut Noise) -> f32 {
         self.lift * self.next(noise.next())
     }
@@ -141,7 +145,8 @@ impl Band {
         let rest = sample - two;
         let band = a * one + b * rest;
         let low = two + b * one + c * rest;
-        // Flushes values below 1e-15, which would soon become subnormal and slow.
+        // Sets values below 1e-15 to zero. They would soon become subnormal, and arithmetic with them is
+        // slow.
         self.state =
             [2.0 * band - one, 2.0 * low - two].map(|k| if k.abs() < 1e-15 { 0.0 } else { k });
         self.width * band
@@ -151,13 +156,13 @@ impl Band {
 /// Smooth random walk between −1 and 1.
 pub(crate) struct Drift {
     value: Smooth,
-    /// Samples between two targets, and samples left until the next one.
+    /// Number of samples from one random target to the next.
     pace: u32,
     left: u32,
 }
 
 impl Drift {
-    /// Creates a walk with about `times` targets per second.
+    /// Creates a random walk with about `times` targets per second, for `rate` samples per second.
     pub(crate) fn new(times: f32, rate: f32) -> Self {
         Self {
             value: Smooth::new(0.5 / times, rate),

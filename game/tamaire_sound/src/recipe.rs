@@ -1,10 +1,10 @@
-//! Sounds of the cues. Each consists of grains: short sounds of a tone and noise.
+//! Sounds of the cues. Each sound consists of grains, short sounds of a tone and noise.
 
 use crate::cue::{Cue, Menu, Route};
 use crate::grain::{Bus, Grain, Voices};
 use crate::part::{Noise, note, share};
 
-/// Starts the grains of a cue. Frequent cues vary randomly.
+/// Starts the grains of a cue. Thuds, tears and crumbs vary randomly, because they are frequent.
 pub(crate) fn start(cue: Cue, noise: &mut Noise, voices: &mut Voices) {
     match cue {
         Cue::Thud { impulse, x } => thud(impulse, x, noise, voices),
@@ -15,7 +15,7 @@ pub(crate) fn start(cue: Cue, noise: &mut Noise, voices: &mut Voices) {
     }
 }
 
-/// Pillow-like: a low, falling tone with soft, dull noise. Lower and longer for heavy impacts.
+/// Pillow-like impact: a low, falling tone with dull noise. Heavier impacts sound lower and last longer.
 fn thud(impulse: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     let heavy = share(impulse, 10.0);
     let pitch = (150.0 - 60.0 * heavy) * noise.between(0.93, 1.07);
@@ -34,11 +34,11 @@ fn thud(impulse: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     });
 }
 
-/// Wet sound: a band of noise that falls as the gap opens, a rising drop, and random crackles. A large tear
-/// also pops.
+/// Wet sound of a tear: a band of noise with a falling pitch, a drop with a rising pitch, and random
+/// crackles. A large tear also pops.
 fn tear(energy: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     let strong = share(energy, 1.0);
-    // Fainter the more grains are playing, so that a long rip does not drown everything else.
+    // Makes a tear fainter if many grains are playing, so that a long rip does not drown everything else.
     let crowd = 1.0 + 0.03 * voices.count() as f32;
     let gain = (0.07 + 0.43 * strong) / crowd;
     let high = noise.between(900.0, 2200.0);
@@ -94,7 +94,7 @@ fn tear(energy: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     }
 }
 
-/// Faint, short tick, like a rice grain falling on felt.
+/// Sound of a landing crumb: a faint, short tick, like a rice grain falling on felt.
 fn crumb(speed: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     let fast = share(speed, 1.0);
     let pitch = noise.between(1300.0, 2800.0);
@@ -112,10 +112,10 @@ fn crumb(speed: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
     });
 }
 
-/// Notes of a jingle: start time [s] and note number.
+/// Notes of a jingle: start time [s] and MIDI note number of each.
 type Tune = &'static [(f32, f32)];
 
-/// Squeezed in: a run up to a broad chord, as round as the body.
+/// Jingle for a body squeezed in: a run up to a broad chord, as round as the body.
 const SQUEEZE: Tune = &[
     (0.0, 60.0),
     (0.09, 64.0),
@@ -128,7 +128,7 @@ const SQUEEZE: Tune = &[
     (0.56, 84.0),
 ];
 
-/// Shaved off: quick hops down and up, like chips.
+/// Jingle for a body with parts shaved off: quick hops down and up, like chips.
 const SHAVE: Tune = &[
     (0.0, 84.0),
     (0.08, 79.0),
@@ -142,7 +142,7 @@ const SHAVE: Tune = &[
     (0.72, 91.0),
 ];
 
-/// Mix of both: the run of `SQUEEZE`, then hops like those of `SHAVE`.
+/// Jingle for a mix of squeezing and shaving: the run of `SQUEEZE`, then hops like those of `SHAVE`.
 const MIX: Tune = &[
     (0.0, 60.0),
     (0.09, 64.0),
@@ -154,7 +154,8 @@ const MIX: Tune = &[
     (0.54, 84.0),
 ];
 
-/// Returns whether a note belongs to the final chord; its top note may start a little later.
+/// Returns whether a note that starts at `delay` [s] belongs to the final chord of a jingle. The chord's top
+/// note may start a little later than the others.
 fn is_last(tune: Tune, delay: f32) -> bool {
     delay >= tune[tune.len() - 2].0
 }
@@ -210,7 +211,7 @@ fn blip(menu: Menu, voices: &mut Voices) {
     }
 }
 
-/// Marimba-like note.
+/// Returns a marimba-like note.
 pub(crate) fn bell(number: f32, delay: f32, gain: f32, ring: f32) -> Grain {
     Grain {
         delay,
@@ -223,7 +224,7 @@ pub(crate) fn bell(number: f32, delay: f32, gain: f32, ring: f32) -> Grain {
     }
 }
 
-/// Attack of a bell: two octaves higher and short, like a mallet on a wooden bar.
+/// Returns the attack of a bell, like a mallet on a wooden bar: a short grain two octaves above the bell.
 pub(crate) fn strike(bell: Grain) -> Grain {
     Grain {
         decay: 0.12 * bell.decay + 0.01,

@@ -7,9 +7,9 @@ use crate::part::clean;
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Soundscape {
-    /// Hands of up to two players.
+    /// Hands on a body, one for each of up to two players.
     pub presses: [Press; 2],
-    /// Squash of the body, from 0 (none) to 1 (flat). Changes cause a wobble.
+    /// Squash of the body, from 0 (none) to 1 (flat). Changes of the value cause a wobble.
     pub squash: f32,
     /// Elapsed share of the time for which the body must rest in the basket, from 0 to 1.
     pub hold: f32,
@@ -51,11 +51,11 @@ pub enum Mute {
 pub struct Volumes {
     /// Overall volume, default 0.8.
     pub master: f32,
-    /// Hands, impacts, tears and the other sounds of the world, default 1.
+    /// Volume of hands, impacts, tears and all other sounds of the world, default 1.
     pub effects: f32,
-    /// Background music, default 0.6.
+    /// Volume of the background music, default 0.6.
     pub music: f32,
-    /// Menus and jingles, default 0.8.
+    /// Volume of menu sounds and jingles, default 0.8.
     pub interface: f32,
 }
 

@@ -1,8 +1,8 @@
 //! Playback on the sound device.
 //!
-//! Three threads share a mailbox. The game writes sounds into it. The thread of the device reads them, and
-//! continues with its old state while the game is writing. A keeper thread opens the device and retries until
-//! it succeeds.
+//! Three threads share a mailbox. The game writes sounds into the mailbox. The device thread reads them;
+//! while the game is writing, it continues with the sounds that it read before. A keeper thread opens the
+//! device and retries until it succeeds.
 
 mod device;
 mod mailbox;
@@ -39,12 +39,12 @@ impl Speaker {
             .name("sound".to_owned())
             .spawn(move || keep_open(&keeper, opened, |lost| open_stream(&keeper, lost)))
             .map_err(|error| SoundError::Refused(error.to_string()))?;
-        // The result is in the mailbox.
+        // Ignores the answer: success or failure is recorded in the mailbox.
         let _ = answer.recv_timeout(PATIENCE);
         Ok(Self { mailbox })
     }
 
-    /// Sets continuous sounds and volumes. To be called in every frame.
+    /// Sets the continuous sounds and the volumes. To be called in every frame.
     pub fn update(&self, soundscape: &Soundscape, volumes: &Volumes) {
         let mut mailbox = lock(&self.mailbox);
         mailbox.soundscape = *soundscape;
@@ -57,8 +57,8 @@ impl Speaker {
         lock(&self.mailbox).put(cue);
     }
 
-    /// Returns the reason for silence, if any, such as an unplugged device. Opening is retried every few
-    /// seconds.
+    /// Returns the reason why no sound plays, such as an unplugged device; `None` if sound plays. Opening the
+    /// device is retried every few seconds.
     pub fn trouble(&self) -> Option<SoundError> {
         lock(&self.mailbox).trouble.clone()
     }

@@ -1,4 +1,4 @@
-//! Renders sounds to samples.
+//! Synthesiser that renders sounds to samples.
 
 use crate::cue::Cue;
 use crate::grain::{BUSES, Bus, Buses, CHUNK, Voices};
@@ -9,17 +9,17 @@ use crate::part::{Noise, Smooth, clean};
 use crate::recipe;
 use crate::soundscape::{Mute, Soundscape, Volumes};
 
-/// Time without updates after which continuous sounds end [s]: the game hangs or has ended.
+/// Time after which continuous sounds end if no update arrives [s]: the game then hangs or has ended.
 const STALE: f32 = 0.5;
 
-/// Reverb send level of each [`Bus`].
+/// Reverb send level of each [`Bus`], 0 to 1.
 const INTO_ROOM: [f32; BUSES] = [0.1, 0.3, 0.12];
 
 /// Synthesiser. Equal calls give equal samples on the same machine.
 pub struct Synth {
     rate: f32,
     soundscape: Soundscape,
-    /// Samples since the last update.
+    /// Number of samples rendered since the last update of the continuous sounds.
     age: usize,
     volumes: Volumes,
     squeaks: [Squeak; 2],
@@ -104,12 +104,13 @@ impl Synth {
         }
     }
 
-    /// Returns the number of short sounds that are playing or waiting, at most 64. A cue consists of several.
+    /// Returns the number of grains (short sounds) that are playing or waiting, at most 64. A cue consists of
+    /// several grains.
     pub fn voice_count(&self) -> usize {
         self.voices.count()
     }
 
-    /// Renders a block of every bus.
+    /// Renders the next `count` samples of every bus.
     fn fill_buses(&mut self, count: usize) {
         self.age += count;
         if self.age as f32 > STALE * self.rate {
@@ -129,7 +130,7 @@ impl Synth {
         self.voices.add(&mut self.noise, &mut self.buses, count);
     }
 
-    /// Mixes sample `place` of the block.
+    /// Mixes sample `place` of all buses to left and right.
     fn mix(&mut self, place: usize) -> [f32; 2] {
         let (mut dry, mut into_room) = ([0.0; 2], [0.0; 2]);
         for ((bus, gain), into) in self.buses.iter().zip(&mut self.gains).zip(INTO_ROOM) {
@@ -145,7 +146,7 @@ impl Synth {
         self.limiter.next(self.floor.next(all, self.rate))
     }
 
-    /// Passes soundscape and volumes on to all parts.
+    /// Passes the soundscape and the volumes on to the parts of the synthesiser.
     fn aim(&mut self) {
         let Soundscape {
             presses,
@@ -160,7 +161,7 @@ impl Synth {
         self.wobble.hear(squash);
         self.chord.hear(hold);
         let volumes = &self.volumes;
-        // Squared, so that half of the slider sounds about half as loud.
+        // Squares the volume, so that half of the slider sounds about half as loud.
         let loudness = |is_on, volume| {
             if is_on {
                 clean(volume, 0.0, 1.0).powi(2)
@@ -175,10 +176,10 @@ impl Synth {
     }
 }
 
-/// Detector of impacts: an impulse much larger than the recent ones.
+/// Filter for impacts: lets a thud be heard only if its impulse is much larger than recent ones.
 #[derive(Default)]
 struct Thuds {
-    /// Largest recent impulse, decaying [N s].
+    /// Largest recent impulse, which decays with time [N s].
     usual: f32,
 }
 

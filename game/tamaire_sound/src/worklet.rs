@@ -1,17 +1,17 @@
-//! The synthesiser of tamaire as a WebAssembly module for an audio worklet. It is a separate module because a
-//! worklet shares no memory with the game and needs only a hundredth of its code.
+//! The synthesiser of tamaire as a WebAssembly module for an audio worklet. It is a separate module, because
+//! a worklet shares no memory with the game and needs only a hundredth of the game's code.
 //!
 //! `cargo rustc --release -p tamaire_sound --features worklet --crate-type cdylib --target
-//! wasm32-unknown-unknown -- -Cstrip=symbols` builds it, and `tools/xtask/web/test/synth.mjs` compares it
-//! under Node with the native synthesiser.
+//! wasm32-unknown-unknown -- -Cstrip=symbols` builds the module, and `tools/xtask/web/test/synth.mjs`
+//! compares it under Node with the native synthesiser.
 //!
-//! A [`Worklet`] has a message buffer and a sample buffer. `game/tamaire/web/worklet.js` fills the first and reads
-//! the second through the [`exports`].
+//! A [`Worklet`] has a message buffer and a sample buffer. `game/tamaire/web/worklet.js` fills the message
+//! buffer and reads the sample buffer through the [`exports`].
 pub mod exports;
 
 use crate::{Message, Synth};
 
-/// Maximum number of frames per call: the block size of browsers.
+/// Maximum number of frames per call of [`Worklet::render`]: the block size of browsers.
 pub const MOST_FRAMES: usize = 128;
 
 /// Synthesiser with a message buffer and a sample buffer.
@@ -32,12 +32,12 @@ impl Worklet {
         }
     }
 
-    /// Returns the buffer for a [`Message`].
+    /// Returns the buffer into which the caller writes the bytes of a [`Message`].
     pub fn message(&mut self) -> &mut [u8] {
         &mut self.message
     }
 
-    /// Processes the first `length` bytes of the message buffer.
+    /// Executes the calls in the first `length` bytes of the message buffer.
     pub fn take(&mut self, length: usize) {
         let length = length.min(self.message.len());
         self.synth.take(&self.message[..length]);

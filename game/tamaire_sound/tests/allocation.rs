@@ -1,4 +1,4 @@
-//! The device thread must never allocate memory: neither cues nor rendering do.
+//! Test that the device thread never allocates memory: neither starting cues nor rendering may allocate.
 
 mod shared;
 

@@ -1,10 +1,10 @@
-//! Measurements of rendered samples.
+//! Tests that measure rendered samples.
 
 use tamaire_sound::{Cue, Menu, Mute, Press, Route, Soundscape, Synth, Volumes};
 
 const RATE: u32 = 48_000;
 
-/// Each kind of cue, loud.
+/// One loud cue of each kind.
 const CUES: [Cue; 9] = [
     Cue::Thud {
         impulse: 30.0,
@@ -35,7 +35,7 @@ fn pressed(force: f32, slip: f32) -> Soundscape {
     }
 }
 
-/// Renders with a soundscape per tick and returns the left channel.
+/// Renders a soundscape that may differ in each tick, and returns the left channel.
 fn render(synth: &mut Synth, seconds: f32, soundscape: impl Fn(f32) -> Soundscape) -> Vec<f32> {
     let mut left = Vec::new();
     let mut tick = [0.0; 2 * RATE as usize / 60];
@@ -59,15 +59,16 @@ fn loudness(samples: &[f32]) -> f32 {
     (samples.iter().map(|k| k * k).sum::<f32>() / samples.len() as f32).sqrt()
 }
 
-/// Returns the RMS frequency [Hz], from the ratio of the power of the sample differences to that of the
-/// samples.
+/// Returns the RMS frequency of samples [Hz]. It follows from the ratio of two powers: that of the
+/// differences between samples, and that of the samples.
 fn centroid(samples: &[f32]) -> f32 {
     let power: f32 = samples.iter().map(|k| k * k).sum();
     let difference: f32 = samples.windows(2).map(|k| (k[1] - k[0]).powi(2)).sum();
     (difference / power).sqrt() * RATE as f32 / std::f32::consts::TAU
 }
 
-/// Returns the largest step between two samples: large for a click, far smaller for a loud sound.
+/// Returns the roughness of samples: the largest step between neighbouring ones. A click has a large step, and
+/// even a loud sound has only far smaller ones.
 fn roughest(samples: &[f32]) -> f32 {
     let step = |k: &[f32]| (k[1] - k[0]).abs();
     samples.windows(2).map(step).fold(0.0, f32::max)
@@ -202,7 +203,8 @@ fn soundscape_changes_do_not_click() {
     let usual = roughest(&steady(&mut Synth::new(RATE), 2.0, pressed(1500.0, 1.0)));
     for from in states {
         for to in states {
-            // At several moments, since a tone cut off at a zero crossing does not click.
+            // Switches the sounds at several moments, because a tone cut off at a zero crossing does not
+            // click.
             let change = |time: f32| {
                 if (4.0 * time).fract() < 0.5 { from } else { to }
             };
@@ -213,7 +215,7 @@ fn soundscape_changes_do_not_click() {
             );
         }
     }
-    // Reference: a sine of 1 kHz at half scale has 0.065.
+    // For comparison: a sine of 1 kHz at half scale has a roughness of 0.065.
     assert!(usual < 0.1, "{usual}");
 }
 
@@ -227,13 +229,13 @@ fn volume_changes_and_cut_off_voices_do_not_click() {
             master,
             ..Volumes::default()
         });
-        // More than the maximum number of voices, so that some are cut off.
+        // Starts more grains than the maximum number of voices, so that some are cut off.
         for _ in 0..100 {
             synth.play(Cue::Menu(Menu::Confirm));
         }
         samples.extend(steady(&mut synth, 1.0 / 60.0, Soundscape::default()));
     }
-    // High tones at full scale have steep slopes, but no sudden change of slope.
+    // A click is a sudden change of slope. High tones at full scale have steep slopes but no such change.
     let slopes: Vec<f32> = samples.windows(2).map(|k| k[1] - k[0]).collect();
     let found = roughest(&slopes);
     assert!(found < 0.1, "{found}");

@@ -1,11 +1,12 @@
-//! Sticks in hands, in closed loop: no setting makes a stick oscillate.
+//! Closed-loop tests of sticks in simulated hands: no setting makes a stick oscillate.
 
 use crate::body::Disc;
 use crate::stick::{Other, Play, Stick, Trace, Wall, play};
 use force_feedback::{Calibration, MAX_STIFFNESS, Settings};
 
-/// Consumer sticks measured at the fingertip, held loosely, normally and firmly, and a strong stick with a
-/// fast driver: mass [kg], damping [N s/m], grip [N/m], full force [N], travel [m] and longest delay [ms].
+/// Measured consumer sticks, held loosely, normally and firmly, and a strong stick with a fast driver. Each
+/// row, at the fingertip: mass [kg], damping [N s/m], grip [N/m], full force [N], travel [m], longest delay
+/// [ms].
 const STICKS: [(f64, f64, f64, f64, f64, u32); 5] = [
     (0.15, 1.5, 5.0, 7.0, 0.05, 20),
     (0.15, 1.5, 30.0, 7.0, 0.05, 20),
@@ -30,8 +31,8 @@ fn sticks() -> impl Iterator<Item = Stick> {
         })
 }
 
-/// Moves into the obstacle, knocks hard against the stick and then holds still. If the stick gives a
-/// velocity, the player releases it after a while, since holding it would increase the force further.
+/// Simulates a player who moves into the obstacle, knocks hard against the stick and then holds still. In
+/// velocity mode, the player releases the stick after a while, because holding it would increase the force.
 fn knock(stick: &Stick, other: &mut dyn Other, how: &Play) -> Trace {
     let full = stick.full;
     play(
@@ -57,7 +58,7 @@ fn check_calm(stick: &Stick, how: &Play, trace: &Trace) {
         let swing = of().fold(f32::MIN, f32::max) - of().fold(f32::MAX, f32::min);
         assert!(swing < 0.01, "the force oscillates by {swing}: {}", what());
     }
-    // Work of a full force along the travel of the stick.
+    // Unit of energy: work of a full force along the travel of the stick [J].
     let unit = stick.full * stick.travel;
     let moves = trace.kinetic[last..].iter().copied().fold(0.0, f64::max);
     assert!(
@@ -96,7 +97,8 @@ fn stick_at_a_wall_does_not_oscillate() {
                         calibration,
                         ..Settings::default()
                     };
-                    // Each wall has its own rate, frame length and scale, to cover many combinations.
+                    // Each wall is tested with another rate, frame length and scale, to cover many
+                    // combinations.
                     for (wall, full, rate, frame, steers, reach) in [
                         (100.0, 1.0, 125, 1, false, 1.0),
                         (100.0, 1000.0, 125, 3, true, 3.0),
@@ -165,7 +167,7 @@ fn stick_at_a_soft_body_does_not_oscillate() {
     assert!(strongest > 0.1, "the body is felt too weakly: {strongest}");
 }
 
-/// A device with differently mounted motors feels the same after calibration.
+/// Tests that a device with differently mounted motors feels the same after calibration.
 #[test]
 fn calibration_undoes_swapped_and_inverted_motors() {
     for (swap, invert) in [
@@ -179,7 +181,8 @@ fn calibration_undoes_swapped_and_inverted_motors() {
             invert,
             ..Calibration::default()
         };
-        // The device applies the mapping that the calibration must undo, with a stronger y motor.
+        // Simulates the mounting of the motors, with a stronger y motor. The calibration must undo this
+        // mapping.
         let moves = |[x, y]: [f32; 2]| {
             let [x, y] = [0, 1].map(|axis| [x, y][axis] * if invert[axis] { -0.1 } else { 0.1 });
             if swap {
@@ -203,8 +206,8 @@ fn calibration_undoes_swapped_and_inverted_motors() {
     }
 }
 
-/// Random hands and sticks that have some damping: a damping ratio of at least 0.25, and damping × travel /
-/// full force of at least 8 ms.
+/// Tests random hands and sticks with at least some damping: a damping ratio of at least 0.25, and damping ×
+/// travel / full force of at least 8 ms.
 #[test]
 fn random_damped_sticks_settle() {
     let mut rng = fastrand::Rng::with_seed(4);
@@ -256,7 +259,7 @@ fn random_damped_sticks_settle() {
             });
             swings[0].max(swings[1])
         });
-        // A body in a corner may itself still move a little, which is felt.
+        // Tolerates more movement of the stick with a soft body: a body in a corner may still move a little.
         let most = if is_body { 0.025 } else { 0.01 };
         let is_calm = now < most || now < 0.9 * before;
         assert!(is_calm, "{now} after {before}: {stick:?}, {how:?}");

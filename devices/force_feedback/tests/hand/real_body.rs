@@ -1,4 +1,4 @@
-//! Forces of a simulated soft body: steady at rest, without jumps.
+//! Tests of the forces from a simulated soft body: they are steady at rest and never jump.
 
 use crate::body::Disc;
 use crate::stick::Other;

@@ -12,7 +12,7 @@ pub const TICK: f64 = 1.0 / 60.0;
 /// Time step of the stick [s].
 const STEP: f64 = 0.25e-3;
 
-/// Stick and the hand that holds it. Lengths and forces are those at the grip.
+/// Stick and the hand that holds it. Lengths and forces are measured at the grip.
 #[derive(Clone, Copy, Debug)]
 pub struct Stick {
     pub mass: f64,
@@ -35,14 +35,14 @@ pub trait Other {
     fn tick(&mut self, goal: [f32; 2]) -> ([f32; 2], [f32; 2]);
 }
 
-/// Settings of a run.
+/// Settings of a simulated run.
 #[derive(Clone, Copy, Debug)]
 pub struct Play {
     pub settings: Settings,
     pub rate: u32,
-    /// Ticks per frame.
+    /// Number of simulation ticks per frame of the game.
     pub frame: u32,
-    /// The stick gives a velocity, see [`StickMode::Velocity`].
+    /// Whether the stick gives a velocity instead of a position, see [`StickMode::Velocity`].
     pub steers: bool,
     /// Distance of the simulated hand from the middle when the stick is at its rim [m]. If the stick gives a
     /// velocity: half the top speed of the simulated hand [m/s].
@@ -50,7 +50,7 @@ pub struct Play {
     pub seconds: f64,
 }
 
-/// Results, one entry per device update.
+/// Recorded values of a run, one entry per device update.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     pub force: Vec<[f32; 2]>,
@@ -58,7 +58,8 @@ pub struct Trace {
     pub kinetic: Vec<f64>,
 }
 
-/// Runs a stick whose hand pulls it towards `wish(time)`, −1 to 1, with the disturbance `nudge(time)` [N].
+/// Runs a stick. The hand pulls it towards the position `wish(time)`, −1 to 1, and disturbs it with the force
+/// `nudge(time)` [N].
 pub fn play(
     stick: &Stick,
     other: &mut dyn Other,
@@ -78,7 +79,7 @@ pub fn play(
     let steps = (play.seconds / STEP) as usize;
     for step in 0..steps {
         let time = step as f64 * STEP;
-        // 10 bit axes, as in consumer sticks.
+        // Rounds the stick position to 10 bits per axis, as in consumer sticks.
         let aim =
             place.map(|k| ((k / stick.travel).clamp(-1.0, 1.0) * 512.0).round() as f32 / 512.0);
         if time >= next_frame {
@@ -131,7 +132,7 @@ pub fn play(
         for axis in 0..2 {
             let motor = f64::from(arrived[axis]) * stick.full;
             let grip = stick.grip * (wish[axis] * stick.travel - place[axis]);
-            // Soft rim; the time step is too long for a hard one.
+            // Models the rim as a spring, because the time step is too long for a hard stop.
             let beyond = place[axis].abs() - stick.travel;
             let rim = if beyond > 0.0 {
                 -(5e4 * beyond * place[axis].signum() + 20.0 * velocity[axis])
@@ -149,9 +150,9 @@ pub fn play(
 /// Wall at x = 0 and a simulated hand with the default coupling.
 #[derive(Clone, Copy, Debug)]
 pub struct Wall {
-    /// Stiffness [N/m].
+    /// Stiffness of the wall [N/m].
     pub stiffness: f32,
-    /// Damping [N s/m].
+    /// Damping of the wall [N s/m].
     pub damping: f32,
     hand: [f32; 2],
     velocity: [f32; 2],

@@ -1,4 +1,4 @@
-//! Force feedback of SDL.
+//! Force feedback through SDL.
 
 use std::ffi::{c_int, c_void};
 use std::marker::PhantomData;
@@ -22,28 +22,29 @@ use sdl3_sys::properties::SDL_GetBooleanProperty;
 
 use super::{OpenDevice, Sdl};
 
-/// Assertion handler of SDL: continues after a failed assertion, such as for a device that was not listed at
-/// the start. In debug builds SDL would otherwise ask on the terminal and block this thread.
+/// Assertion handler of SDL that continues after a failed assertion. For example, SDL fails an assertion for
+/// a device that was not listed at the start. Without the handler, debug builds of SDL ask on the terminal
+/// and block this thread.
 unsafe extern "C" fn go_on(_: *const SDL_AssertData, _: *mut c_void) -> SDL_AssertState {
     SDL_ASSERTION_ALWAYS_IGNORE
 }
 
-/// Two constant forces of an open device, along x and y. Dropping it removes the effects.
+/// Two constant forces of an open device, along x and y. Dropping the value removes the effects.
 pub struct Motors<'sdl> {
     haptic: NonNull<SDL_Haptic>,
     effects: [SDL_HapticEffectID; 2],
-    /// Duration of the effects [ms].
+    /// Duration of the effects after their start [ms].
     length: u32,
     _sdl: PhantomData<&'sdl Sdl>,
 }
 
-/// SDL directions of the forces that push to the right and away from the player. SDL names the side that a
-/// force comes from, with x to the right and y towards the player. The directions never change, since drivers
-/// restart an effect whenever its direction changes.
+/// SDL directions of the two forces, for pushes to the right and away from the player. SDL names the side
+/// that a force comes from, with x to the right and y towards the player. The directions are constant,
+/// because drivers restart an effect when its direction changes.
 const FROM: [[i32; 3]; 2] = [[-1, 0, 0], [0, 1, 0]];
 
 impl Sdl {
-    /// Starts the haptic subsystem. If it fails, devices can still be read.
+    /// Starts SDL's haptic subsystem. If this fails, devices can still be read.
     pub(super) fn start_to_feel(&mut self) {
         // SAFETY: see the module; the handler is a function of the program and stays valid.
         self.feels = unsafe {
@@ -53,7 +54,7 @@ impl Sdl {
     }
 
     /// Opens the motors of a device and uploads zero forces that last `length` [ms], or without limit for
-    /// `None`. Returns `None` if the device has no two-axis force feedback; according to SDL, pads have none.
+    /// `None`. Returns `None` if the device has no force feedback on two axes, as SDL reports for all pads.
     /// `Motors` must be dropped before the device.
     pub fn motors<'sdl>(
         &'sdl self,
@@ -88,7 +89,7 @@ impl Sdl {
 }
 
 impl OpenDevice<'_> {
-    /// Returns USB vendor and product id; 0 if unknown.
+    /// Returns the USB vendor id and product id of the device; 0 if unknown.
     pub fn model(&self) -> (u16, u16) {
         let joystick = self.joystick.as_ptr();
         // SAFETY: see the module.
@@ -108,7 +109,8 @@ impl OpenDevice<'_> {
         }
     }
 
-    /// Rumbles for a duration [ms]. Returns whether it succeeded.
+    /// Rumbles for `length` [ms] with the strengths of the slow and the fast motor. Returns whether SDL
+    /// accepted the call.
     pub fn rumble(&self, low: u16, high: u16, length: u32) -> bool {
         // SAFETY: see the module.
         unsafe { SDL_RumbleJoystick(self.joystick.as_ptr(), low, high, length) }
@@ -116,7 +118,8 @@ impl OpenDevice<'_> {
 }
 
 impl Motors<'_> {
-    /// Changes the forces; `anew` also restarts their duration. Returns whether SDL accepted all changes.
+    /// Sets the levels of the x and the y force; `anew` also restarts their duration. Returns whether SDL
+    /// accepted all changes.
     pub fn push(&self, levels: [i16; 2], anew: bool) -> bool {
         let haptic = self.haptic.as_ptr();
         let mut could = true;

@@ -1,4 +1,4 @@
-//! Virtual devices of SDL.
+//! Virtual devices that SDL simulates.
 
 use std::ffi::{CString, c_int, c_void};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use sdl3_sys::joystick::{
 use super::{HatBits, OpenDevice, Sdl};
 use crate::{DeviceId, Direction, PadButton};
 
-/// Type and size of a virtual device.
+/// Kind of a virtual device, with its numbers of controls.
 #[derive(Clone, Copy, Debug)]
 pub enum PuppetForm {
     Pad,
@@ -26,7 +26,7 @@ pub enum PuppetForm {
 pub struct Rumble(Arc<AtomicU32>);
 
 impl Rumble {
-    /// Returns the strengths of the slow and the fast motor.
+    /// Returns the rumble strengths of the slow and the fast motor, 0 to 65535.
     pub fn get(&self) -> [u16; 2] {
         let both = self.0.load(Ordering::Relaxed);
         [(both >> 16) as u16, both as u16]
@@ -43,7 +43,7 @@ unsafe extern "C" fn take_rumble(rumble: *mut c_void, low: u16, high: u16) -> bo
 }
 
 /// # Safety
-/// As for `take_rumble`; the pointer is not used afterwards.
+/// `rumble` is the pointer given to SDL by `plug_in`, and it is not used after this call.
 unsafe extern "C" fn clean_up(rumble: *mut c_void) {
     // SAFETY: guaranteed by the caller.
     drop(unsafe { Arc::from_raw(rumble.cast_const().cast::<AtomicU32>()) });
@@ -58,7 +58,7 @@ pub enum PuppetAct {
 }
 
 impl Sdl {
-    /// Plugs in a virtual device, which lasts until it is unplugged or SDL ends.
+    /// Plugs in a virtual device. The device stays until it is unplugged or SDL ends.
     pub fn plug_in(
         &self,
         name: &str,
@@ -83,9 +83,9 @@ impl Sdl {
         wish.Rumble = Some(take_rumble);
         wish.Cleanup = Some(clean_up);
         // SAFETY: see the module; SDL copies the description and its name, and the callbacks are functions of
-        // the program. SDL returns `userdata` when the device is removed. If SDL refuses the device, it is
-        // unknown whether `userdata` was returned: a test then leaks a few bytes rather than freeing them
-        // twice.
+        // the program. SDL passes `userdata` to `clean_up` when the device is removed. If SDL refuses the
+        // device, it is unknown whether `clean_up` was called: a test then leaks a few bytes rather than
+        // freeing them twice.
         match unsafe { SDL_AttachVirtualJoystick(&wish) } {
             SDL_JoystickID(0) => Err(self.error()),
             SDL_JoystickID(id) => Ok(DeviceId(id)),

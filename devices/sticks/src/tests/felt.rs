@@ -1,4 +1,4 @@
-//! Feedback of virtual devices.
+//! Tests of force feedback with virtual devices.
 
 use super::*;
 use force_feedback::{
@@ -33,12 +33,12 @@ fn pad_rumble_ends_by_itself_and_on_drop() {
         pad.rumble() == [32768, 65534]
     });
     until("the rumble ends", || pad.rumble() == [0, 0]);
-    // SDL counts whole milliseconds.
+    // Allows 2 ms more, because SDL counts whole milliseconds.
     let length = start.elapsed() + Duration::from_millis(2);
     assert!(length >= OUTPUT_DURATION, "{length:?}");
 
     drop(haptic);
-    // A busy machine may be slow now and then.
+    // One quick try of twenty suffices, because a busy machine may be slow now and then.
     let is_quick = (0..20).any(|_try| {
         let mut haptic = sticks.haptic(pad.id());
         until("the pad can rumble", || haptic.ability() == Ability::Rumble);
@@ -74,7 +74,7 @@ fn obsolete_output_is_not_played() {
     let (sticks, pad) = open_with_pad();
     let mut haptic = sticks.haptic(pad.id());
     until("the pad can rumble", || haptic.ability() == Ability::Rumble);
-    // Blocks the thread, as in a stopped process.
+    // Blocks the SDL thread, as in a stopped process.
     order(&sticks, |_| thread::sleep(OUTPUT_DURATION));
     assert!(haptic.play(HUM).is_ok());
     let (tell, told) = std::sync::mpsc::channel();

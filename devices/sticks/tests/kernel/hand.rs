@@ -1,4 +1,4 @@
-//! Forces that a kernel device plays for a sequence of commands, and the invariants of such a sequence.
+//! Forces that a kernel device plays for a sequence of driver commands, and checks of such a sequence.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -11,10 +11,10 @@ const TO_THE_RIGHT: u16 = 0xc000;
 const AWAY: u16 = 0x8000;
 /// Interval at which a continuing force is started again.
 const START_AGAIN: Duration = Duration::from_millis(150);
-/// Maximum difference of delays between two commands on a slow machine.
+/// Tolerance for the time between two commands: their delays differ on a slow machine.
 const LATE: Duration = Duration::from_millis(30);
 
-/// Settings with limits that are reached soon and are visible despite `LATE`.
+/// Settings with low limits, so that a violation is visible despite the tolerance `LATE`.
 pub fn settings() -> Settings {
     Settings {
         slew: *Settings::SLEW.start(),
@@ -53,7 +53,7 @@ impl Hand {
         }
     }
 
-    /// Returns the force, x to the right, y away from the player [full forces].
+    /// Returns the force at a time [full forces]: x to the right, y away from the player.
     fn force(&self, at: Instant) -> [f32; 2] {
         let mut force = [0.0; 2];
         for motor in self.0.values().filter(|motor| motor.plays(at)) {
@@ -76,7 +76,7 @@ impl Motor {
     }
 }
 
-/// Returns the force at a time, which may be in the future if no further commands arrive.
+/// Returns the force at the time `at`. For a time in the future, assumes that no further commands arrive.
 pub fn force_at(told: &[Told], at: Instant) -> [f32; 2] {
     let mut hand = Hand::default();
     for told in told.iter().take_while(|told| told.at <= at) {
@@ -101,8 +101,9 @@ pub fn quiet_since(told: &[Told]) -> Option<Instant> {
     told.get(last_loud + 1).map(|told| told.at)
 }
 
-/// Checks the commands of one line: the centring spring is off; there are two effects of finite length with
-/// constant directions; these are restarted in time and not more often; levels keep their limits.
+/// Checks the driver commands of one line of `force_feedback`. The centring spring must be off, and there
+/// must be two effects of finite length with constant directions. A continuing force must be restarted in
+/// time and not more often, and the levels must keep the limits of the settings.
 pub fn check(told: &[Told]) {
     let centred = told
         .iter()
@@ -129,7 +130,7 @@ pub fn check(told: &[Told]) {
     assert_eq!(directions, [TO_THE_RIGHT, AWAY]);
 }
 
-/// Checks the commands of one effect and returns its direction.
+/// Checks the driver commands of one effect and returns the direction of the effect.
 fn check_motor(told: &[Told]) -> u16 {
     let effects: Vec<(Instant, Effect)> = told
         .iter()
@@ -152,10 +153,11 @@ fn check_motor(told: &[Told]) -> u16 {
         .map(|(at, effect)| (*at, f32::from(effect.level) / 32767.0))
         .collect();
     for many in levels.windows(5) {
-        // Unchanged levels are not sent: the first of these levels may have lasted until the second was sent.
+        // Unchanged levels are not sent. The force may therefore have kept the first level until the second
+        // was sent.
         let (from, before, (at, to)) = (many[0].1, many[1].0, many[4]);
         let most = settings.slew * (at - before + LATE).as_secs_f32();
-        // A stop is exempt from the slew limit.
+        // A change to zero is a stop, which is exempt from the slew limit.
         let is_slow = to == 0.0 || (to - from).abs() <= most;
         assert!(is_slow, "from {from} to {to} in {:?}", at - before);
         assert!(to.abs() <= settings.clamp + 1e-4, "{to}");

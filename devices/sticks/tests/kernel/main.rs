@@ -1,9 +1,9 @@
-//! Sticks, motors and all safety functions, tested against the force feedback of a real kernel. A virtual
-//! stick is plugged in and pushed by a simulated game, and records the commands of its driver.
+//! Tests of sticks, motors and all safety functions against the force feedback of a real kernel. A virtual
+//! stick is plugged in, records the commands of its driver, and is pushed by a simulated game.
 //!
-//! `cargo xtask kernel` runs this in a virtual machine, since it needs /dev/uinput, no udev, and exclusive
-//! devices. The emulated processor is ten times as slow and is sometimes delayed. Time limits therefore apply
-//! to the lower quartile of several tries.
+//! `cargo xtask kernel` runs the tests in a virtual machine, because they need /dev/uinput, no udev, and
+//! exclusive devices. The emulated processor is a tenth as fast as a real one and is sometimes delayed. Time
+//! limits therefore apply to the lower quartile of several tries.
 
 #![cfg(target_os = "linux")]
 
@@ -20,9 +20,9 @@ use sticks::{Control, DeviceId, Sticks};
 use uinput::{Stick, Told, What};
 
 const MS: Duration = Duration::from_millis(1);
-/// Timeout on a slow machine for everything without a tighter limit.
+/// Timeout of all waits without a limit of their own. Long, because the machine is slow.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// Environment variable of a process that only plays until it is killed.
+/// Environment variable that makes a process of this test push the stick until it is killed.
 const PLAYS: &str = "STICKS_KERNEL_TEST_PLAYS";
 
 const LEFT: [f32; 2] = [-1.0, 0.0];
@@ -47,7 +47,7 @@ impl Game {
         game
     }
 
-    /// Connects to the stick that was plugged in last.
+    /// Connects the game to the stick that was plugged in last.
     fn take_hold(&mut self) {
         until("there is a stick", || self.id().is_some());
         let haptic = self.sticks.haptic(self.id().expect("there is a stick"));
@@ -70,7 +70,7 @@ impl Game {
         snapshot.devices.last().map(|device| device.aim())
     }
 
-    /// Leans the stick against an obstacle until the force has a given strength. Returns the time of the last
+    /// Leans the stick against an obstacle until its force reaches `strength`. Returns the time of the last
     /// reported state.
     fn is_pushed(&self, stick: &Stick, push: [f32; 2], strength: f32) -> Instant {
         let aim = push.map(|k| -k);
@@ -86,7 +86,7 @@ impl Game {
     }
 }
 
-/// Simulates a contact for a duration. Returns the time of the last reported state.
+/// Simulates a contact with the force `push` for a duration. Returns the time of the last reported state.
 fn simulate(line: &Line, push: [f32; 2], duration: Duration) -> Instant {
     let start = Instant::now();
     loop {
@@ -117,7 +117,7 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
 /// Waits for a zero force. Returns the time since which the force is zero.
 fn until_quiet(stick: &Stick) -> Instant {
     let quiet = || quiet_since(&stick.told());
-    // A delay of the whole machine also makes the force zero for a short time, which does not count.
+    // A force that returns was zero only because the whole machine was delayed. Waits on in this case.
     until("the force is zero", || {
         quiet().is_some_and(|since| since.elapsed() > 50 * MS)
     });
@@ -131,7 +131,8 @@ fn until_erased(stick: &Stick) {
     });
 }
 
-/// Prints the times and checks that their lower quartile keeps the limit: the machine only adds time.
+/// Prints the times and checks that their lower quartile keeps the limit. A slow machine can only lengthen
+/// them.
 fn took(what: &str, mut times: Vec<Duration>, promised: Duration) {
     times.sort();
     let [quick, middle, longest] = [1, 2, 4].map(|k| times[(times.len() - 1) * k / 4]);
@@ -206,7 +207,7 @@ fn shaken_stick_keeps_the_limits() {
 #[test]
 #[ignore = "cargo xtask kernel"]
 fn every_stop_takes_at_most_20_ms() {
-    /// Stops the force and returns the start time of the stop.
+    /// Function that stops the force and returns the start time of the stop.
     type Way = fn(&mut Game) -> Instant;
     let pause: Way = |game| {
         let start = Instant::now();
@@ -224,7 +225,7 @@ fn every_stop_takes_at_most_20_ms() {
         let thread = std::thread::spawn(move || {
             simulate(&line, LEFT, 50 * MS);
             tell.send(Instant::now()).expect("the test waits");
-            // Like a panic, but without printing a message.
+            // Unwinds like a panic, but without printing a message.
             std::panic::resume_unwind(Box::new(()));
         });
         thread.join().expect_err("the thread panics");
@@ -266,7 +267,7 @@ fn force_ends_within_100_ms_of_a_stall() {
     let game = Game::start();
     let times = (0..7).map(|_try| {
         let last = game.is_pushed(&stick, LEFT, 0.08);
-        // This thread is the simulation, and it hangs here.
+        // Simulates a game that hangs: this thread reports the states.
         sleep(300 * MS);
         assert_eq!(game.line().report().silent, Some(Stop::Stale));
         until_quiet(&stick).saturating_duration_since(last)
@@ -284,7 +285,7 @@ fn released_device_keeps_no_effect_and_can_be_reused() {
     game.line = None;
     until_erased(&stick);
     for _try in 0..5 {
-        // Does not wait until the previous sink has released the device.
+        // Drops the line without waiting until the previous sink has released the device.
         game.line = None;
         game.take_hold();
         game.is_pushed(&stick, LEFT, 0.05);
@@ -318,7 +319,7 @@ fn device_pushes_again_after_being_replugged() {
     }
 }
 
-/// Another process that plays.
+/// Another process that pushes the stick. Dropping it kills the process.
 struct Process(Child);
 
 impl Process {
@@ -347,7 +348,7 @@ impl Process {
 
 impl Drop for Process {
     fn drop(&mut self) {
-        // Ignores the error if the process was already killed.
+        // Ignores the error, which means that the process was already killed.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
@@ -368,7 +369,7 @@ fn kernel_stops_the_force_of_a_killed_process() {
     let stick = plug_in();
     let mut process = Process::start(&stick);
     let start = Instant::now();
-    // SIGKILL: no handler runs, and nothing is dropped.
+    // `kill` sends SIGKILL, so no handler runs, and nothing is dropped.
     process.0.kill().expect("the process runs");
     process.0.wait().expect("the process can be waited for");
     let time = until_quiet(&stick) - start;
@@ -389,7 +390,7 @@ fn force_of_a_hanging_process_ends_and_later_ramps_up() {
     let stick = plug_in();
     let process = Process::start(&stick);
     process.signal("-STOP");
-    // Pending commands arrive.
+    // Waits until the commands on their way have arrived.
     sleep(50 * MS);
     let (start, hung) = (Instant::now(), stick.told());
     assert_ne!(

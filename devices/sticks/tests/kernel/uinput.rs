@@ -20,7 +20,7 @@ const EV_SYN: u16 = 0;
 const EV_KEY: u16 = 1;
 const EV_ABS: u16 = 3;
 const EV_FF: u16 = 0x15;
-/// Event from the kernel, not from a program: a request to the device.
+/// Event type of requests from the kernel to the virtual device.
 const EV_UINPUT: u16 = 0x101;
 const UI_FF_UPLOAD: u16 = 1;
 const UI_FF_ERASE: u16 = 2;
@@ -43,7 +43,7 @@ const UI_END_FF_UPLOAD: Ioctl = _IOW::<uinput_ff_upload>(U, 201);
 const UI_BEGIN_FF_ERASE: Ioctl = _IOWR::<uinput_ff_erase>(U, 202);
 const UI_END_FF_ERASE: Ioctl = _IOW::<uinput_ff_erase>(U, 203);
 
-/// Range of an axis to each side, in device units.
+/// Largest value of an axis in each direction, in device units.
 const RIM: f32 = 1000.0;
 
 /// Virtual stick, plugged in until it is dropped.
@@ -52,14 +52,14 @@ pub struct Stick {
     listener: Option<JoinHandle<()>>,
 }
 
-/// Data shared by both threads.
+/// Data shared by the test and the thread that answers the kernel.
 struct Desk {
     file: File,
     told: Mutex<Vec<Told>>,
     is_plugged_in: AtomicBool,
 }
 
-/// Command of the driver.
+/// Command of the kernel's driver, with its time.
 #[derive(Clone, Copy, Debug)]
 pub struct Told {
     pub at: Instant,
@@ -70,21 +70,21 @@ pub struct Told {
 pub enum What {
     /// Creates or changes an effect.
     Upload(Effect),
-    /// Starts an effect, `times` times; 0 ends it.
+    /// Starts an effect that is played `times` times; 0 ends the effect.
     Play { id: i16, times: i32 },
     /// Removes an effect.
     Erase { id: i16 },
-    /// Strength of the centring spring.
+    /// Sets the strength of the centring spring.
     Autocentre(i32),
-    /// Overall gain.
+    /// Sets the overall gain.
     Gain(i32),
 }
 
-/// Constant force.
+/// Constant force effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effect {
     pub id: i16,
-    /// Direction: 0 pushes towards the player, 0x4000 to the left, 0x8000 away, 0xc000 to the right.
+    /// Direction of the push: 0 towards the player, 0x4000 to the left, 0x8000 away, 0xc000 to the right.
     pub direction: u16,
     pub level: i16,
     /// Duration after the start; zero is unlimited.
@@ -155,7 +155,7 @@ impl Stick {
         Ok(())
     }
 
-    /// Returns all commands of the driver.
+    /// Returns all commands of the driver since the stick was plugged in.
     pub fn told(&self) -> Vec<Told> {
         self.desk.told().clone()
     }
@@ -182,8 +182,8 @@ impl Drop for Stick {
 }
 
 impl Desk {
-    /// Handles the kernel's requests until the device is destroyed. Destruction makes every answer fail, but
-    /// does not wake a blocked read.
+    /// Answers the kernel's requests until the device is destroyed. Polls, because the destruction of the
+    /// device makes every answer fail but does not wake a blocked read.
     fn listen(&self) {
         while self.is_plugged_in.load(Ordering::Relaxed) {
             let has_answered = !is_readable(&self.file) || self.answer().is_ok();
@@ -237,7 +237,7 @@ impl Effect {
             effect.type_, FF_CONSTANT,
             "only constant forces are supported"
         );
-        // `struct ff_constant_effect` begins with its level.
+        // In the union, `struct ff_constant_effect` begins with the level, as 16 bits.
         let [first, second, ..] = effect.u[0].to_ne_bytes();
         Effect {
             id: effect.id,
@@ -250,7 +250,7 @@ impl Effect {
 }
 
 /// # Safety
-/// A structure of numbers only, valid with all bytes zero.
+/// Implement it only for structures of plain numbers that are valid with all bytes zero.
 unsafe trait Plain {}
 // SAFETY: see libc; these are the structures that the kernel reads and writes.
 unsafe impl Plain for input_event {}
@@ -279,7 +279,7 @@ fn is_readable(file: &File) -> bool {
         events: POLLIN,
         revents: 0,
     };
-    // SAFETY: the count of one matches the one structure.
+    // SAFETY: the count of one matches the one structure `poll`.
     let status = unsafe { libc::poll(&mut poll, 1, 20) };
     status > 0
 }

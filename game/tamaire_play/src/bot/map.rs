@@ -1,27 +1,27 @@
-//! Path finding in a room, around obstacles and pieces.
+//! Path finding for a bot's hand in a room, around obstacles and pieces.
 
 use fuwafuwa::{Dim, Vec3};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Width of a cell in 2D and in 3D [m]. In 3D, cells of 0.1 m would be too many.
+/// Width of a path-finding cell in 2D and in 3D [m]. In 3D, cells of 0.1 m would be too many.
 const CELL: [f32; 2] = [0.1, 0.15];
-/// Integer cost of a step through a free cell. Costs are integers because a heap cannot order floating-point
-/// numbers.
+/// Integer cost of a step through a free cell. Costs are integers, because Rust's heap cannot order
+/// floating-point numbers.
 const UNIT: f32 = 10.0;
 
-/// Cost of a step for each cell of a room.
+/// Grid over a room with the cost of a step through each cell.
 pub(super) struct Map {
     low: Vec3,
     /// Width of a cell [m].
     cell: f32,
-    /// Number of cells on each axis; 1 on an unused axis.
+    /// Number of cells on each axis. An unused axis has 1 cell.
     size: [usize; 3],
-    /// Cost of each cell; 1 for a free cell.
+    /// Cost of a step through each cell, relative to a free cell.
     costs: Vec<f32>,
 }
 
-/// Minimum cost of reaching a position from each cell.
+/// Minimum cost of the way from each cell to a fixed target position.
 pub(super) struct CostField<'a> {
     map: &'a Map,
     to: Vec3,
@@ -35,7 +35,7 @@ impl Map {
         let cell = CELL[D::N - 2];
         let cells = ((high - low) / cell).ceil().max(Vec3::ONE);
         let mut size = cells.to_array().map(|cells| cells as usize);
-        // On an unused axis the centre of the only cell is at 0.
+        // The only cell on an unused axis must have its centre at 0.
         size[D::N..].fill(1);
         if D::N == 2 {
             low.z = -0.5 * cell;
@@ -53,14 +53,14 @@ impl Map {
         map
     }
 
-    /// Adds `cost` to the cell at a position and to its neighbours.
+    /// Adds `cost` to the cell at a position and to the neighbours of the cell.
     pub(super) fn add(&mut self, at: Vec3, cost: f32) {
         let cell = self.cell(at);
         self.costs[cell] += cost;
         around(self.size, cell, |next, _| self.costs[next] += cost);
     }
 
-    /// Returns the minimum costs of reaching a position from all cells.
+    /// Returns the minimum costs of the ways from all cells to a position.
     pub(super) fn ways_to(&self, to: Vec3) -> CostField<'_> {
         self.ways(to, None)
     }
@@ -70,8 +70,8 @@ impl Map {
         self.ways(to, Some(self.cell(from))).next(from)
     }
 
-    /// Runs Dijkstra's algorithm from the target. With `from`, it stops at that cell, and only costs below
-    /// the cost of that cell are final.
+    /// Runs Dijkstra's algorithm from the target `to`. Stops at the cell `from`, if given. Then only costs
+    /// below that cell's cost are final.
     fn ways(&self, to: Vec3, from: Option<usize>) -> CostField<'_> {
         let mut costs = vec![u32::MAX; self.costs.len()];
         let goal = self.cell(to);
@@ -108,7 +108,7 @@ impl Map {
         self.low + (steps + 0.5) * self.cell
     }
 
-    /// Returns the cost of the straight line.
+    /// Returns the cost of moving on the straight line.
     fn straight(&self, from: Vec3, to: Vec3) -> f32 {
         let way = to - from;
         let steps = (way.length() / self.cell).ceil();
@@ -120,7 +120,8 @@ impl Map {
 }
 
 impl CostField<'_> {
-    /// Returns the furthest position on the path from `from` that can be reached on a straight line.
+    /// Returns the furthest position on the cheapest path that a straight line from `from` can reach without
+    /// extra cost.
     pub(super) fn next(&self, from: Vec3) -> Vec3 {
         let start = self.map.cell(from);
         let straight = self.map.straight(from, self.to);
@@ -140,7 +141,7 @@ impl CostField<'_> {
         best.unwrap_or(self.to)
     }
 
-    /// Returns the neighbour with the lowest cost; the first one of equals.
+    /// Returns the neighbour of a cell with the lowest cost; of several equal ones, the first.
     fn cheapest_around(&self, cell: usize) -> usize {
         let (mut cheapest, mut least) = (cell, u32::MAX);
         around(self.map.size, cell, |next, _| {
@@ -152,12 +153,12 @@ impl CostField<'_> {
     }
 }
 
-/// Returns the index of the cell at these coordinates.
+/// Returns the index of the cell with the coordinates `x`, `y` and `z`.
 fn number(size: [usize; 3], [x, y, z]: [usize; 3]) -> usize {
     x + size[0] * (y + size[1] * z)
 }
 
-/// Returns the coordinates of a cell.
+/// Returns the coordinates of the cell with an index.
 fn steps(size: [usize; 3], cell: usize) -> [usize; 3] {
     let row = cell / size[0];
     [cell % size[0], row % size[1], row / size[1]]
@@ -189,7 +190,7 @@ mod tests {
     #[test]
     fn path_leads_around_a_wall_and_straight_through_free_space() {
         let arena = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, 1.0, 0.0)];
-        // A wall across the centre with a gap at the top.
+        // The test room has a wall across its centre, with a gap at the top.
         let wall = |at: Vec3| at.x.abs() < 0.1 && at.y < 0.7;
         let map = Map::new::<Dim2>(arena, |at| if wall(at) { 1000.0 } else { 1.0 });
         let to = Vec3::new(0.8, 0.0, 0.0);

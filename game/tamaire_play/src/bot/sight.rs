@@ -1,57 +1,58 @@
-//! A bot's view of a round: the basket, the most important piece, and the obstacles.
+//! A bot's view of a round: the basket, the piece to push, and the obstacles.
 
 use super::map::Map;
 use crate::Round;
 use fuwafuwa::{Dim, DimVector, MotionType, PieceView, Shape, Vec3};
 use std::cell::LazyCell;
 
-/// Share of the total mass below which a piece is ignored.
+/// Share of the total mass below which a bot ignores a piece.
 const CRUMB: f32 = 0.003;
-/// Maximum number of pieces to consider, in order of mass.
+/// Maximum number of pieces that a bot considers, in order of mass.
 const MOST: usize = 12;
-/// Cost of a path cell in an obstacle (`RIGID`), and additional cost of a cell with mass (`SOFT` times its
-/// share of the total mass).
+/// Cost of a step through a cell in an obstacle, relative to a free cell.
 const RIGID: f32 = 1000.0;
+/// Additional cost of a step through a cell with soft matter, times the cell's share of the total mass.
 const SOFT: f32 = 400.0;
 
 /// A bot's view of a round.
 pub(super) struct Sight {
-    /// Unit vector into the basket.
+    /// Unit vector through the mouth into the basket.
     pub axis: Vec3,
-    /// Unit vector along the mouth; horizontal in 3D.
+    /// Unit vector across the basket's axis, along the mouth; horizontal in 3D.
     pub across: Vec3,
-    /// The piece to push: the heaviest one outside the basket with free space behind it, after the skipped
-    /// ones.
+    /// Piece to push. It is the heaviest piece outside the basket with free space behind it, not counting the
+    /// pieces that the bot skips.
     pub piece: Piece,
-    /// Mass kept in the largest pieces, [`Progress::kept`](crate::Progress::kept).
+    /// Value of [`Progress::kept`](crate::Progress::kept): mass kept in the largest pieces.
     pub kept: f32,
     /// Number of pieces.
     pub pieces: usize,
-    /// Share of the mass in the basket.
+    /// Share of the mass in the basket, at rest or moving.
     pub within: f32,
-    /// Share of the mass in the basket, at rest or moving, minus the required share.
+    /// Value of `within` minus the share of the mass required for a win.
     pub surplus: f32,
-    /// Position and target of the hand [m].
+    /// Position of the hand [m].
     pub hand: Vec3,
+    /// Target position of the hand [m].
     pub goal: Vec3,
-    /// Waiting position of the hand: in front of the basket, as far away as possible [m].
+    /// Position where the hand waits [m]: in front of the basket, as far away as possible.
     pub away: Vec3,
-    /// Costs for the path of a hand.
+    /// Map for finding the path of the hand.
     pub map: Map,
 }
 
 /// A piece, and the positions for pushing it.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Piece {
-    /// Centre [m].
+    /// Centre of the piece [m].
     pub centre: Vec3,
-    /// Unit vector in the direction to push.
+    /// Unit vector in the direction in which to push the piece.
     pub direction: Vec3,
-    /// Distance between its centre and that of a hand that touches it from behind [m].
+    /// Distance between the piece's centre and the centre of a hand that touches the piece from behind [m].
     pub reach: f32,
     /// Position from which a hand starts to push [m].
     pub behind: Vec3,
-    /// Distance between its centre and that of the mouth [m].
+    /// Distance between the piece's centre and the mouth's centre [m].
     pub far: f32,
     /// Whether the piece is narrower than the mouth.
     pub fits: bool,
@@ -59,19 +60,19 @@ pub(super) struct Piece {
 
 /// A bot's view of the basket.
 struct Basket {
-    /// Unit vector into the basket.
+    /// Unit vector through the mouth into the basket.
     axis: Vec3,
     /// Centre of the mouth [m].
     mouth: Vec3,
-    /// Half width on each used axis across the mouth [m]; infinite on other axes.
+    /// Half width of the basket on each used axis across the mouth [m]; infinite on other axes.
     half: Vec3,
-    /// Half width of the opening between the bars of the mouth, on the same axes [m].
+    /// Half width of the opening between the bars of the mouth [m], on the same axes as `half`.
     opening: Vec3,
 }
 
 impl Sight {
-    /// Returns the view of a round. `skips` is the number of more important pieces to pass over. A piece as
-    /// wide as the mouth is pushed straight in if its centre is at most `off` beside the mouth's axis [m].
+    /// Returns a bot's view of a round, without the first `skips` pieces by importance. A piece as wide as
+    /// the mouth is pushed straight in if its centre is at most `off` [m] from the mouth's axis.
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
         let (world, arena) = (round.world(), round.level().arena());
         let region = round.basket()?;
@@ -102,8 +103,8 @@ impl Sight {
         if pieces.is_empty() {
             pieces.push(Piece::of::<D>(largest, &basket, &ahead, off, radius));
         }
-        // Pieces without space for a hand behind them come last. The sort is stable, so mass decides among
-        // the others.
+        // Moves pieces without space for a hand behind them to the end. The sort is stable, so all other
+        // pieces stay sorted by mass.
         pieces.sort_by_key(|piece| clearance(piece.behind, obstacles) < 0.5 * radius);
         let piece = pieces[skips % pieces.len()];
 
@@ -135,8 +136,8 @@ impl Sight {
 }
 
 impl Piece {
-    /// Returns the piece of a view. `ahead` returns the next position on the path from a position to the
-    /// front of the basket, `off` is the argument of [`Sight::of`], and `hand` is the radius of the hand [m].
+    /// Returns a bot's view of a piece. `ahead` returns the next position on the path from a position to the
+    /// front of the basket. `off` is the argument of [`Sight::of`], and `hand` is the radius of the hand [m].
     fn of<D: Dim>(
         view: &PieceView,
         basket: &Basket,
@@ -148,13 +149,14 @@ impl Piece {
         let half = (view.high - view.low) * 0.5;
         let (along, aside) = split(centre - basket.mouth, basket.axis);
         let spare = basket.spare(half);
-        // In 3D, a piece that fits on one of the two axes across the mouth is moved on the other one only. So
-        // a piece on a floor is not lifted.
+        // In 3D, the mouth has two axes. A piece that is narrow enough on one of them is moved along the
+        // other one only, so that a piece on a floor is not lifted.
         let fits =
             |axis: usize| D::N == 3 && spare[axis].is_finite() && aside[axis].abs() < spare[axis];
         let off_mouth = [0, 1, 2].map(|axis| if fits(axis) { 0.0 } else { aside[axis] });
         let off_mouth = Vec3::from(off_mouth).length();
-        // Straight in, or first to a position in front of the mouth.
+        // Pushes the piece straight in, or first to a position in front of the mouth if it is too far from
+        // the axis.
         let target = match off_mouth > spare.min_element().max(off) {
             true => ahead(centre),
             false => basket.mouth + basket.axis * (along + 0.6),
@@ -201,8 +203,8 @@ impl Basket {
         })
     }
 
-    /// Returns the half width of the basket minus `half` on each axis [m]; negative where the basket is
-    /// narrower.
+    /// Returns by how much the basket's half width exceeds `half` on each axis [m]; negative where the basket
+    /// is narrower.
     fn spare(&self, half: Vec3) -> Vec3 {
         self.half - half
     }
@@ -221,7 +223,8 @@ impl Basket {
     }
 }
 
-/// Returns the direction into a basket: opposite to the direction with the longest line of sight out of it.
+/// Returns the direction into a basket. It is opposite to the direction with the longest line of sight from
+/// the basket's centre.
 fn inwards<D: Dim>(centre: Vec3, half: Vec3, obstacles: &[Shape<D>]) -> Vec3 {
     const WAYS: [Vec3; 6] = [
         Vec3::X,
@@ -241,8 +244,8 @@ fn inwards<D: Dim>(centre: Vec3, half: Vec3, obstacles: &[Shape<D>]) -> Vec3 {
         .expect("there are at least four directions")
 }
 
-/// Returns the half width of the opening on an axis across the mouth [m]: the shortest line of sight to an
-/// obstacle from points near the mouth's centre.
+/// Returns the half width of the mouth's opening on the axis `across` [m]. It is the shortest distance to an
+/// obstacle along that axis from points near the mouth's centre.
 fn opening<D: Dim>(mouth: Vec3, axis: Vec3, across: usize, obstacles: &[Shape<D>]) -> f32 {
     let sees = |from: Vec3, way: Vec3| {
         let mut far = 0.0;
@@ -269,20 +272,20 @@ fn across<D: Dim>(axis: Vec3) -> Vec3 {
     across
 }
 
-/// Returns the distance to the nearest obstacle [m]; negative inside one.
+/// Returns the distance from a position to the nearest obstacle [m]; negative inside an obstacle.
 fn clearance<D: Dim>(at: Vec3, obstacles: &[Shape<D>]) -> f32 {
     let at = D::Vector::from_vec3(at);
     let distances = obstacles.iter().map(|shape| shape.distance(at).0);
     distances.fold(f32::INFINITY, f32::min)
 }
 
-/// Returns the nearest position in the room, at least `margin` away from the walls [m].
+/// Returns the position nearest to `place` that is in the room and at least `margin` [m] from its walls.
 fn clamped(place: Vec3, [low, high]: [Vec3; 2], margin: f32) -> Vec3 {
     let margin = Vec3::splat(margin).min((high - low) * 0.5);
     place.clamp(low + margin, high - margin)
 }
 
-/// Splits a vector into its component along a unit vector and the remainder.
+/// Returns the component of a vector along the unit vector `axis`, and the remaining vector.
 pub(super) fn split(v: Vec3, axis: Vec3) -> (f32, Vec3) {
     let along = v.dot(axis);
     (along, v - axis * along)

@@ -1,9 +1,9 @@
-//! Checks whether the start of a level can be played.
+//! Checks that a level can be played from its start.
 
 use fuwafuwa::{Dim, DimVector, SoftBody, Vec3, World};
 
-/// Checks that hands can move in the arena and that bodies can be reached. Returns the invalid field and the
-/// expected value otherwise.
+/// Checks that hands can move in the arena and can reach the bodies. If not, returns the invalid field and
+/// the expected value.
 pub(super) fn check<D: Dim>(
     world: &World<D>,
     [low, high]: [Vec3; 2],
@@ -14,7 +14,7 @@ pub(super) fn check<D: Dim>(
         let reason = format!("expected hands that fit into the view, which is {room} m wide");
         return Err(("hand", reason));
     }
-    // A body may start outside the arena if gravity pulls it in.
+    // Accepts a body that starts outside the arena if gravity pulls it in.
     let fall = world.config().gravity;
     let is_out = |middle: D::Vector, k: usize| {
         middle[k] < low[k] && fall[k] <= 0.0 || middle[k] > high[k] && fall[k] >= 0.0

@@ -5,13 +5,13 @@
 /// Probability that the next bit is a one, learned from the preceding bits.
 #[derive(Copy, Clone, Debug)]
 pub struct Chance {
-    /// Probability in units of 1/65536, never 0 or 1.
+    /// Probability of a one, in units of 1/65536. Neither 0 nor 1 is reached.
     one: u16,
-    /// Number of bits learned from, at most [`MEMORY`].
+    /// Number of bits from which the probability was learned, at most [`MEMORY`].
     seen: u8,
 }
 
-/// Approximate number of remembered bits. With more, the model adapts to changes too slowly.
+/// Approximate number of latest bits that determine a probability. With more, the model adapts too slowly.
 const MEMORY: u8 = 120;
 
 impl Default for Chance {
@@ -35,15 +35,15 @@ impl Chance {
     }
 }
 
-/// Coder of bits. Writing and reading use the same model code.
+/// Encoder or decoder of bits. One trait, so that writing and reading use the same model code.
 pub trait Bits {
     /// Codes the next bit. A writer encodes `bit` and returns it; a reader ignores `bit` and returns the
     /// decoded one.
     fn bit(&mut self, chance: &mut Chance, bit: bool) -> bool;
 }
 
-/// Interval of the remaining number, as 32 bits after the binary point, both ends included. The first bytes
-/// of the ends differ.
+/// Interval that contains the coded number. Both ends are included and are given by their next 32 bits; the
+/// bits before are already known. The first bytes of the ends differ.
 #[derive(Copy, Clone, Debug)]
 struct Range {
     low: u32,
@@ -56,7 +56,7 @@ impl Range {
         high: u32::MAX,
     };
 
-    /// Returns the last number that codes a one.
+    /// Returns the end of the part of the interval that stands for a one: the last number in it.
     fn split(self, chance: &Chance) -> u32 {
         let width = u64::from(self.high - self.low);
         self.low + ((width * u64::from(chance.one)) >> 16) as u32
@@ -69,7 +69,7 @@ impl Range {
         }
     }
 
-    /// Removes and returns the first byte, if it is the same at both ends.
+    /// If both ends have the same first byte, removes this byte from the interval and returns it.
     fn next(&mut self) -> Option<u8> {
         let [low, high] = [self.low, self.high].map(|end| end >> 24);
         (low == high).then(|| {
@@ -95,10 +95,11 @@ impl Writer {
         }
     }
 
-    /// Ends the encoding and returns the bytes. A reader takes missing bytes as zeros.
+    /// Ends the encoding and returns the bytes. A reader treats missing bytes as zeros.
     pub fn finish(mut self) -> Vec<u8> {
         if self.range.low > 0 {
-            // The first bytes of the ends differ: the smallest number with one more byte lies between them.
+            // The first bytes of the ends differ, so the first byte of `low` plus one lies within the
+            // interval.
             self.bytes.push((self.range.low >> 24) as u8 + 1);
         }
         self.bytes
@@ -116,8 +117,8 @@ impl Bits for Writer {
     }
 }
 
-/// Decoder of bits. Any bytes are valid, and the sequence has no end: the caller must know the number of
-/// bits.
+/// Decoder of bits. Any bytes can be decoded, and decoding never ends. The caller must know how many bits
+/// were written.
 #[derive(Debug)]
 pub struct Reader<'a> {
     range: Range,
@@ -174,8 +175,8 @@ mod tests {
     #[test]
     fn bits_round_trip_close_to_their_entropy() {
         let mut random = fastrand::Rng::with_seed(1);
-        // One in `one_in` bits is a one. Entropy of 10,000 of them [bytes], by H(p) = −p·log₂ p −
-        // (1−p)·log₂(1−p).
+        // Tests random bits of which one in `one_in` is a one. `entropy` is the entropy of 10,000 such bits
+        // [bytes], by H(p) = −p·log₂ p − (1−p)·log₂(1−p).
         for (one_in, entropy) in [(2, 1250.0), (10, 586.2), (1000, 14.3)] {
             let bits: Vec<bool> = (0..10_000).map(|_| random.u32(..one_in) == 0).collect();
             let (read, bytes) = passed(&bits);

@@ -1,8 +1,8 @@
-//! Bytes as decimal digits. A QR code stores three digits in ten bits, but one character of base64 in eight
-//! bits.
+//! Encoding of bytes as decimal digits for QR codes. A QR code stores three digits in ten bits, but one
+//! character of base64 in eight bits.
 
-/// Number of digits for 0 to 7 bytes. Seven bytes take seventeen digits; the other entries are for the
-/// remaining bytes.
+/// Number of decimal digits that encode 0 to 7 bytes. Bytes are encoded in groups of seven; the smaller
+/// entries serve the last group.
 const DIGITS: [usize; 8] = [0, 3, 5, 8, 10, 13, 15, 17];
 const BYTES: usize = DIGITS.len() - 1;
 

@@ -4,7 +4,8 @@ use crate::ReplayError;
 use crate::level::LevelError;
 use serde::Deserialize;
 
-/// Maximum length of a fragment without the `#` [characters]. Browsers and chat programs accept this length.
+/// Maximum length of a link's fragment without the `#` [characters]. Browsers and chat programs accept links
+/// of this length.
 pub const MAX_LENGTH: usize = 16_000;
 
 /// Reason why a link cannot be made or read.
@@ -19,7 +20,7 @@ pub enum LinkError {
     /// The end of the link is missing.
     #[error("the end of this link is missing")]
     CutShort,
-    /// The link was changed.
+    /// The link was changed: its checksum does not match.
     #[error("this link is damaged or incomplete")]
     Damaged,
     /// The link is too long.
@@ -28,7 +29,7 @@ pub enum LinkError {
         /// Length of the link [characters].
         found: usize,
     },
-    /// The built-in level in the link differs from the one in this program.
+    /// The link names a built-in level that differs in this program.
     #[error("the level {0:?} has changed since this link was made")]
     LevelDiffers(
         /// Name of the level.
@@ -42,7 +43,7 @@ pub enum LinkError {
     Level(#[from] LevelError),
 }
 
-/// Decodes the first value in the bytes, and returns it with the rest.
+/// Decodes a value at the start of the bytes. Returns the value and the remaining bytes.
 pub(super) fn taken<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<(T, &'a [u8]), LinkError> {
     postcard::take_from_bytes(bytes).map_err(|_| LinkError::Damaged)
 }

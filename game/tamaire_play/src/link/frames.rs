@@ -1,10 +1,11 @@
-//! Compressed input frames. Each position is predicted: the hand keeps its velocity, or it rests. The
-//! prediction errors are coded with a model that learns their size while coding.
+//! Compression of input frames. The next target position of a hand is predicted: either the hand keeps its
+//! velocity, or it rests. The prediction errors are coded with a model that learns their sizes while coding.
 
 use super::coder::{Bits, Chance, Reader, Writer};
 use crate::{InputFrame, PLAYERS};
 
-/// Encodes frames: a byte with the method, followed by the coded frames.
+/// Encodes frames: a byte that stores the [`Method`], followed by the coded frames. Tries both predictions
+/// and takes the shorter result.
 pub fn write(frames: &[InputFrame]) -> Vec<u8> {
     let unit = common_unit(frames);
     let ways = [false, true].map(|goes_on| Method { goes_on, unit });
@@ -20,7 +21,7 @@ pub fn write(frames: &[InputFrame]) -> Vec<u8> {
     shorter.expect("there are two methods")
 }
 
-/// Decodes `count` frames; `None` if the method is invalid.
+/// Decodes `count` frames. Returns `None` if the first byte is not a valid [`Method`].
 pub fn read(bytes: &[u8], count: usize) -> Option<Vec<InputFrame>> {
     let (&first, told) = bytes.split_first()?;
     let mut model = Model::new(Method::of(first)?);
@@ -33,13 +34,15 @@ pub fn read(bytes: &[u8], count: usize) -> Option<Vec<InputFrame>> {
     )
 }
 
-/// Method of coding frames.
+/// Parameters for coding frames, stored in the first byte.
 #[derive(Copy, Clone, Debug)]
 struct Method {
-    /// Whether a hand is predicted to keep its velocity instead of resting. On a slow screen a mouse position
-    /// arrives only every few ticks; then hands move in jumps, and resting is the better prediction.
+    /// `true`: a hand is predicted to keep its velocity. `false`: a hand is predicted to rest. Rest is the
+    /// better prediction on a slow screen, where a mouse position arrives only every few ticks and hands move
+    /// in jumps.
     goes_on: bool,
-    /// Exponent of the power of two that divides all coordinates.
+    /// Exponent of the largest power of two that divides all coordinates. They are divided by it before
+    /// coding.
     unit: u32,
 }
 
@@ -61,19 +64,19 @@ fn common_unit(frames: &[InputFrame]) -> u32 {
     units.min().unwrap_or(0).min(u16::BITS - 1)
 }
 
-/// Number of classes of recent prediction errors.
+/// Number of classes of prediction errors, see [`Track::class`].
 const CLASSES: usize = 2 * 19;
-/// Number of probabilities for the next digit, one for each prefix of digits. All longer prefixes share the
-/// last one.
+/// Number of probabilities for the next binary digit of an error: one for each prefix of digits. All longer
+/// prefixes share the last probability.
 const GUESSED: usize = 64;
 
-/// Adaptive model of the frames. Writer and reader learn the same probabilities.
+/// Adaptive model of the frames. Writer and reader learn the same probabilities from the same bits.
 struct Model {
     way: Method,
     /// Probability that a player has a target, by player and by whether they had one in the last frame.
     present: [[Chance; 2]; PLAYERS],
     was_present: [bool; PLAYERS],
-    /// State of each axis of each hand.
+    /// Recent coordinates of each hand, on each axis.
     tracks: [[Track; 3]; PLAYERS],
     axes: [Differences; 3],
 }
@@ -87,13 +90,13 @@ struct Track {
     off: [i16; 3],
 }
 
-/// Probabilities of the prediction errors on an axis. All arithmetic wraps around at 16 bits.
+/// Probabilities of the prediction errors on an axis. All arithmetic with errors wraps around at 16 bits.
 struct Differences {
-    /// Probability that a number has more than `index` binary digits, by class.
+    /// Probability that an error has more than `index` binary digits, by class of the recent errors.
     longer: [[Chance; 16]; CLASSES],
-    /// Probability that a number is negative, by the sign of the last one.
+    /// Probability that an error is negative, by the sign of the error before it.
     negative: [Chance; 3],
-    /// Probability of the next digit, by number of digits and by the digits before it.
+    /// Probability of an error's next binary digit, by the number of its digits and by the digits before.
     digits: [[Chance; GUESSED]; 17],
 }
 
@@ -113,7 +116,8 @@ impl Model {
         }
     }
 
-    /// Codes the next frame. A writer encodes `frame`; a reader ignores it and returns the decoded one.
+    /// Codes the next frame. A writer encodes `frame` and returns it; a reader ignores `frame` and returns
+    /// the decoded frame.
     fn pass(&mut self, bits: &mut impl Bits, frame: InputFrame) -> InputFrame {
         let mut passed = InputFrame::default();
         for player in 0..PLAYERS {
@@ -163,7 +167,7 @@ impl Track {
         self.off = [off, self.off[0], self.off[1]];
     }
 
-    /// Returns the class of the recent prediction errors, by their size and by whether they grow.
+    /// Returns the class of the recent prediction errors. It depends on their size and on whether they grow.
     fn class(&self) -> usize {
         let [last, before, third] = self.off.map(|off| u32::from(off.unsigned_abs()));
         let size = u32::BITS - (2 * last + before + third).leading_zeros();
@@ -192,7 +196,7 @@ impl Differences {
             let is_one = bits.bit(chance, given >> digit & 1 == 1);
             size = size << 1 | u16::from(is_one);
         }
-        // 2¹⁵ is its own negative in 16 bits.
+        // Wraps around, because 2¹⁵ is its own negative in 16 bits.
         if is_negative {
             size.wrapping_neg() as i16
         } else {
@@ -231,7 +235,7 @@ mod tests {
         );
     }
 
-    /// If these bytes change, existing links become unreadable, and `FORMAT` must change.
+    /// Guards existing links: if these bytes change, the links become unreadable, and `FORMAT` must change.
     #[test]
     fn encoding_of_frames_never_changes() {
         let goal = |tick: i16| [tick * tick - 900, 91 * (tick % 40), tick & 3];

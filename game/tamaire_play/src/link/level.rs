@@ -1,4 +1,4 @@
-//! Levels in links: a built-in level by name, any other one in full.
+//! Levels in links. A built-in level is sent by name, any other level in full.
 
 use super::error::{LinkError, all};
 use crate::assists::assisted;
@@ -28,10 +28,10 @@ pub(super) struct SentLevel {
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Content {
-    /// A built-in level with assists.
+    /// A built-in level, sent by its name and its assists.
     Known {
         assists: BTreeSet<Assist>,
-        /// Lower half of the level's hash.
+        /// Lower half of the level's hash, which detects a different level of the same name.
         hash: u32,
     },
     /// Any other level, as a deflated [`WholeScene`].
@@ -59,7 +59,8 @@ impl SentLevel {
         if sent.id.chars().count() > MAX_NAME {
             return Err(LinkError::Damaged);
         }
-        // The extension prevents a custom level from taking the name of a built-in one.
+        // Appends a file extension to the name of a custom level, so that it cannot take the name of a
+        // built-in level.
         let is_made = matches!(sent.content, Content::Whole(_)) && !sent.id.contains('.');
         let id = sent.id.clone() + if is_made { ".toml" } else { "" };
         Ok(Level::from_scene(&id, without_assists(sent.scene()?))?)
@@ -78,7 +79,8 @@ impl SentLevel {
     }
 }
 
-/// Text of a scene without the files of its bodies, and those files as bytes, which are shorter than base64.
+/// Text of a scene and the files of its bodies. The files are sent as bytes, which are shorter than base64 in
+/// the text.
 pub(super) type WholeScene = (String, Vec<Option<Vec<u8>>>);
 
 fn deflated(id: &str, scene: &Scene) -> Result<Vec<u8>, LinkError> {
@@ -106,7 +108,8 @@ fn inflated(id: &str, deflated: &[u8]) -> Result<Scene, LinkError> {
     Ok(scene)
 }
 
-/// Removes the file content of a body and returns its bytes. Content that is not base64 stays in the text.
+/// Removes the embedded file from a body and returns the file's bytes. Content that is not base64 stays in
+/// the body.
 fn take_file(body: &mut BodyText) -> Option<Vec<u8>> {
     let bytes = BASE64_STANDARD.decode(body.content.as_ref()?).ok()?;
     body.content = None;

@@ -1,4 +1,4 @@
-//! Default sound device: opened, kept open, and reopened after a loss.
+//! Keeper of the default sound device: opens it and reopens it after a loss.
 
 use super::mailbox::{Mailbox, SoundError, lock};
 use super::source::Source;
@@ -9,14 +9,14 @@ use std::sync::{Mutex, Weak};
 use std::thread;
 use std::time::Duration;
 
-/// Timeout after which a device that does not answer is treated as missing.
+/// Time after which a device that does not answer counts as missing.
 pub(super) const PATIENCE: Duration = Duration::from_secs(3);
 
 /// Pause between two attempts to open a device.
 pub(super) const PAUSE: Duration = Duration::from_secs(2);
 
-/// Keeps a device open until the speaker is dropped. After the first attempt it drops `opened`, for which
-/// [`Speaker::open`](super::Speaker::open) waits.
+/// Keeps a device open until the speaker is dropped. After the first attempt to open it, drops `opened`,
+/// because [`Speaker::open`](super::Speaker::open) waits for that.
 pub(super) fn keep_open<Stream>(
     mailbox: &Weak<Mutex<Mailbox>>,
     opened: Sender<()>,
@@ -54,12 +54,13 @@ pub(super) fn report(mailbox: &Weak<Mutex<Mailbox>>, trouble: Option<SoundError>
     }
 }
 
-/// Opens a stream on the default device, which plays until dropped. A loss of the device is sent to `lost`.
+/// Opens a stream on the default device. The stream plays until it is dropped. If the device is lost, the
+/// error is sent to `lost`.
 pub(super) fn open_stream(
     mailbox: &Weak<Mutex<Mailbox>>,
     lost: Sender<SoundError>,
 ) -> Result<cpal::Stream, SoundError> {
-    // Stops ALSA from printing failed attempts; relevant errors are returned.
+    // Stops ALSA from printing an error for each failed attempt. Relevant errors are returned.
     #[cfg(target_os = "linux")]
     let _ = alsa::Output::local_error_handler();
     let device = cpal::default_host()
@@ -100,9 +101,10 @@ fn build<T: SizedSample + FromSample<f32>>(
         config,
         move |out: &mut [T], _| source.fill(out, channels),
         move |error| match error.kind() {
-            // Playback continues.
+            // Ignores these errors, because playback continues after them.
             ErrorKind::DeviceChanged | ErrorKind::Xrun | ErrorKind::RealtimeDenied => {}
-            // The send fails if the keeper has already closed the channel.
+            // Sending fails if the keeper has already closed the channel, and then nothing more is to be
+            // done.
             _ => drop(lost.send(error.into())),
         },
         Some(PATIENCE),

@@ -1,4 +1,4 @@
-//! Data shared by the game and the device.
+//! Mailbox shared by the game and the sound device.
 
 use crate::cue::Cue;
 use crate::soundscape::{Soundscape, Volumes};
@@ -7,8 +7,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// Maximum number of waiting cues; a tick of heavy tearing has about a hundred.
 const MOST_CUES: usize = 256;
 
-/// Maximum number of waiting thuds, tears and crumbs. The rest is reserved for menus and jingles, which are
-/// few and must not be lost.
+/// Maximum number of waiting cues at which thuds, tears and crumbs are still accepted. The places above are
+/// for menus and jingles, which are few and must not be lost.
 pub const MOST_CUES_OF_THE_WORLD: usize = 240;
 
 /// Reason why there is no sound. The game continues silently.
@@ -20,7 +20,7 @@ pub enum SoundError {
     /// Another program uses the device exclusively.
     #[error("the sound device is in use by another program")]
     Busy,
-    /// The device does not respond.
+    /// The device did not respond in time.
     #[error("the sound device does not answer")]
     NoAnswer,
     /// Another error, with the message of the system.
@@ -32,7 +32,7 @@ pub enum SoundError {
 pub struct Mailbox {
     pub soundscape: Soundscape,
     pub volumes: Volumes,
-    /// Incremented by each update, so that the device detects it.
+    /// Number of the last update. The device detects an update by a changed number.
     pub number: u64,
     pub cues: Vec<Cue>,
     pub trouble: Option<SoundError>,
@@ -49,8 +49,8 @@ impl Mailbox {
         }
     }
 
-    /// Adds a cue. Drops it if the mailbox is full, or if there is no device: the cue would be heard too
-    /// late.
+    /// Adds a cue. Drops the cue if the mailbox is full. Also drops the cue if there is no device, because it
+    /// would be heard too late.
     pub fn put(&mut self, cue: Cue) {
         let most = match cue {
             Cue::Thud { .. } | Cue::Tear { .. } | Cue::Crumb { .. } => MOST_CUES_OF_THE_WORLD,
@@ -62,7 +62,7 @@ impl Mailbox {
     }
 }
 
-/// Locks the mailbox. It is consistent at all times, so poisoning is ignored.
+/// Locks the mailbox. Ignores poisoning, because a panic cannot leave the mailbox inconsistent.
 pub fn lock(mailbox: &Mutex<Mailbox>) -> MutexGuard<'_, Mailbox> {
     mailbox.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! Sample source of the device.
+//! Source of the samples that the sound device plays.
 
 use super::mailbox::Mailbox;
 use crate::soundscape::{Mute, Soundscape};
@@ -6,14 +6,14 @@ use crate::synth::Synth;
 use cpal::{FromSample, SizedSample};
 use std::sync::{Mutex, TryLockError, Weak};
 
-/// Frames rendered at a time.
+/// Maximum number of frames (left and right sample) rendered at a time.
 const FRAMES: usize = 256;
 
 /// State of the device thread, which must never block or allocate.
 pub struct Source {
     mailbox: Weak<Mutex<Mailbox>>,
     synth: Synth,
-    /// Number of the last update read.
+    /// Number of the update that was read last from the mailbox.
     number: u64,
 }
 
@@ -26,8 +26,8 @@ impl Source {
         }
     }
 
-    /// Fills frames of `channels` samples. Channels after the second are silent; a single channel gets the
-    /// mean.
+    /// Fills `out` with frames of `channels` samples. A single channel gets the mean of left and right;
+    /// channels after the second are silent.
     pub fn fill<T: SizedSample + FromSample<f32>>(&mut self, out: &mut [T], channels: usize) {
         self.listen();
         let mut stereo = [0.0; 2 * FRAMES];
@@ -47,7 +47,7 @@ impl Source {
         }
     }
 
-    /// Reads updates and cues. If the mailbox is locked, they are read in the next call.
+    /// Reads updates and cues from the mailbox. If the mailbox is locked, leaves them for the next call.
     fn listen(&mut self) {
         let Some(mailbox) = self.mailbox.upgrade() else {
             let hush = Mute::Everything;

@@ -1,8 +1,8 @@
-//! Exports of a [`Worklet`] for a program that loads this library as a WebAssembly module. An instance has
-//! one worklet, at a fixed address.
+//! Exports of a [`Worklet`] for a program that loads this library as a WebAssembly module. Each module
+//! instance has one worklet, at a fixed address.
 //!
-//! The interface uses plain numbers only, so that no generated glue is needed: a worklet has neither `fetch`
-//! nor `TextDecoder`.
+//! The functions use plain numbers only and need no generated glue code. Such code would call `fetch` and
+//! `TextDecoder`, which an audio worklet lacks.
 #![allow(unsafe_code)] // only for `no_mangle`
 
 use super::Worklet;
@@ -30,7 +30,7 @@ pub extern "C" fn sound_message_room() -> usize {
     WORKLET.with_borrow_mut(|worklet| worklet.message().len())
 }
 
-/// Processes a message of `length` bytes.
+/// Executes the calls in a message of `length` bytes, which the message buffer contains.
 #[unsafe(no_mangle)]
 pub extern "C" fn sound_take(length: usize) {
     WORKLET.with_borrow_mut(|worklet| worklet.take(length));

@@ -1,9 +1,9 @@
-//! Counts the memory allocations of each thread.
+//! Counter of the memory allocations of each thread, for tests.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-/// Allocator that counts allocations per thread, since the test harness may allocate meanwhile.
+/// Allocator that counts allocations per thread. A common count would include those of the test harness.
 struct Counting;
 
 thread_local! {
