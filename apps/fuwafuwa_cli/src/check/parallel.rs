@@ -9,11 +9,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///
 /// # Errors
 /// The first error of a case, or an error if a case panicked.
-pub fn each<Case: Sync, ScanInfo: Send>(
+pub fn each<Case: Sync, Outcome: Send>(
     cases: &[Case],
     progress: &Progress,
-    work: impl Fn(&Case) -> Result<ScanInfo> + Sync,
-) -> Result<Vec<ScanInfo>> {
+    work: impl Fn(&Case) -> Result<Outcome> + Sync,
+) -> Result<Vec<Outcome>> {
     progress.expect(cases.len() as u64);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let next = AtomicUsize::new(0);
