@@ -96,7 +96,7 @@ pub enum ControlEvent {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HatBits(pub u8);
 
-/// Whether the permission to run SDL is available.
+/// Whether no thread runs SDL at present. Only one thread at a time may run it.
 static TURN: Mutex<bool> = Mutex::new(true);
 static GIVEN_BACK: Condvar = Condvar::new();
 

@@ -2,14 +2,15 @@
 //! in.
 //!
 //! Modules in reading order; each uses mainly those before it:
+//! - `error`: the error type
 //! - `foundation`: dimensions, ids, arenas, hashing, threads
-//! - `math`: vectors, rotations, SIMD lanes
+//! - `math`: vectors, rotations, velocities, SIMD lanes
 //! - `material`: elastic, plastic and fracture constants
 //! - `topology`: voxel grid, connectivity, cell hierarchy, element classes, mesh, pieces
 //! - `rigid_body`: rigid bodies, shapes, layers
-//! - `soft_body`: element laws, forces of all elements, state, views
+//! - `soft_body`: element laws, forces of all elements, state, releases and removals, views
 //! - `contact`: broad phase, contact solver, joints
-//! - `fracture`: crack growth, cuts, knives, removal
+//! - `fracture`: crack growth, cuts, knives
 //! - `event`, `object_ref`, `query`: results for programs
 //! - `world`: all bodies, and time
 //! - [`inspect`]: internals for figures and renderers

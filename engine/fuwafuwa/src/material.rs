@@ -26,10 +26,12 @@ pub struct Material {
     /// Toughness of a crack tip [Pa √m]: tension times the root of the distance over which the tension is
     /// spread.
     ///
-    /// The tip of a crack is as sharp as a voxel is small, so its tension grows with 1/√voxel. The solver
+    /// The smaller the voxels, the sharper a crack tip, and its tension grows with 1/√voxel. The solver
     /// compares the tension with toughness/√voxel, so that a body tears at the same load at every resolution
-    /// [Griffith 1921]. As plain numbers, a toughness of a fifth of the strength gives cracks that keep running
-    /// once they have started. With a toughness of half the strength, only the surface is scuffed.
+    /// [Griffith 1921].
+    ///
+    /// Rule of thumb, with toughness in Pa √m and strength in Pa: at toughness = 0.2 strength, a crack that has
+    /// started keeps running; at 0.5 strength, cracks stop near the surface.
     pub toughness: f32,
     /// Yield strain. Strain beyond it becomes permanent; volume is preserved. Infinite (default) = purely
     /// elastic, like rubber.

@@ -128,13 +128,18 @@ pub struct RigidBody<D: Dim> {
     pub position: D::Vector,
     /// Rotation from local to world axes. In 2D only the part about the third axis is used.
     pub rotation: Rotation,
-    /// Velocity of a dynamic body, default 0. Ignored for kinematic and coupled bodies, because their
-    /// velocities follow from their targets.
+    /// Initial velocity, default 0. A fixed body has none, a coupled body only a linear one, and that of a kinematic
+    /// body is replaced in its first tick.
     pub velocity: Velocity<D>,
-    /// Coulomb friction coefficient, default 0.2; 0.5 for dynamic bodies. Contacts with soft bodies use this
-    /// value alone and ignore the friction of the material. Contacts between two rigid bodies use the mean of
-    /// both values. Against a fixed body, a dynamic body uses the value of the fixed body, but a kinematic or
-    /// coupled body uses its own value.
+    /// Target position of a kinematic or coupled body [m]; `None` (default) = its position.
+    pub target_position: Option<D::Vector>,
+    /// Target rotation of a kinematic or coupled body; `None` (default) = its rotation.
+    pub target_rotation: Option<Rotation>,
+    /// Coulomb friction coefficient, default 0.2; 0.5 from [`RigidBody::dynamic`]. Contacts with soft bodies use this
+    /// value alone and ignore the friction of the material. Contacts between two rigid bodies use:
+    /// - the mean of both values, if neither is fixed
+    /// - the value of the fixed body, if the other is dynamic
+    /// - the value of the other body, if it is kinematic or coupled and touches a fixed body
     pub friction: f32,
     /// Restitution coefficient, 0 to 1, default 0. Used in contacts between two rigid bodies of which at
     /// least one is dynamic; the larger of the two values applies. In contacts with soft bodies, elasticity
@@ -182,6 +187,8 @@ impl<D: Dim> RigidBody<D> {
             position: D::Vector::ZERO,
             rotation: Rotation::NONE,
             velocity: Velocity::default(),
+            target_position: None,
+            target_rotation: None,
             friction: 0.2,
             restitution: 0.0,
             layers: Layers::default(),
@@ -221,42 +228,55 @@ impl<D: Dim> RigidBody<D> {
         }
     }
 
-    /// Returns the body at a position [m].
+    /// Returns the body at a position [m]. Unless the shape is centred on the origin, as [`RigidBody::dynamic`] makes it,
+    /// its centre is elsewhere.
     #[must_use]
     pub fn at(self, position: D::Vector) -> Self {
         Self { position, ..self }
     }
 
-    /// Returns the body translated `by` [m].
+    /// Returns the body translated `by` [m], target included.
     #[must_use]
     pub fn translated(self, by: D::Vector) -> Self {
-        self.at(self.position + by)
-    }
-
-    /// Returns the body rotated about its [`position`](RigidBody::position).
-    #[must_use]
-    pub fn rotated(self, by: Rotation) -> Self {
         Self {
-            rotation: self.rotation.then(by),
+            position: self.position + by,
+            target_position: self.target_position.map(|target| target + by),
             ..self
         }
     }
 
-    /// Returns the body rotated about a point [m], velocity included. In 2D only the part of the rotation
+    /// Returns the body rotated about its [`position`](RigidBody::position), target included. In 2D only the part of
+    /// the rotation about the third axis is applied.
+    #[must_use]
+    pub fn rotated(self, by: Rotation) -> Self {
+        let by = by.seen_in::<D>();
+        Self {
+            rotation: self.rotation.then(by),
+            target_rotation: self.target_rotation.map(|target| target.then(by)),
+            ..self
+        }
+    }
+
+    /// Returns the body rotated about a point [m], velocity and target included. In 2D only the part of the rotation
     /// about the third axis is applied.
     #[must_use]
     pub fn rotated_about(self, rotation: Rotation, point: D::Vector) -> Self {
         let rotation = rotation.seen_in::<D>();
-        let position = rotation.apply_about(self.position.to_vec3(), point.to_vec3());
+        let about = |position: D::Vector| {
+            let turned = rotation.apply_about(position.to_vec3(), point.to_vec3());
+            D::Vector::from_vec3(turned)
+        };
         let Velocity { linear, angular } = self.velocity;
         let angular = rotation.apply(angular.to_vec3());
         Self {
-            position: D::Vector::from_vec3(position),
+            position: about(self.position),
             rotation: self.rotation.then(rotation),
             velocity: Velocity {
                 linear: rotation.apply(linear),
                 angular: D::Angular::from_vec3(angular),
             },
+            target_position: self.target_position.map(about),
+            target_rotation: self.target_rotation.map(|target| target.then(rotation)),
             ..self
         }
     }

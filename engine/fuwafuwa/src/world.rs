@@ -46,8 +46,8 @@ const CRUMB_SPIN_LOSS: f32 = 20.0;
 /// With a higher speed, the braking of sliding pieces would be visible.
 const SETTLING: f32 = 2.0;
 const SETTLING_SPEED: f64 = 0.1;
-/// Node speed above which a piece is quarantined [m/s]. No node moves by more than a voxel in a substep. At
-/// the usual 960 substeps a second, only voxels wider than 1 m can therefore reach this speed.
+/// Node speed above which a piece is quarantined [m/s]. Speeds are also limited to one voxel per substep. At
+/// the usual 960 substeps a second, this constant therefore matters only for voxels wider than 1 m.
 const TOP_SPEED: f32 = 1000.0;
 
 /// Simulated world: soft bodies, rigid bodies, joints and knives. [`World::step`] advances its time.

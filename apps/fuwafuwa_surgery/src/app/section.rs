@@ -161,7 +161,7 @@ fn screen(colour: Colour) -> Color32 {
 struct Page {
     rect: Rect,
     cut: Cut,
-    /// Page coordinates at the centre of `rect` [m].
+    /// Point of the section plane at the centre of `rect`, in the coordinates of the plane [m].
     middle: Vec2,
     /// Scale [points/m].
     scale: f32,

@@ -267,7 +267,7 @@ fn force_ends_within_100_ms_of_a_stall() {
     let game = Game::start();
     let times = (0..7).map(|_try| {
         let last = game.is_pushed(&stick, LEFT, 0.08);
-        // Simulates a game that hangs: this thread reports the states.
+        // This thread reports the states, so no reports arrive while it sleeps, as in a game that hangs.
         sleep(300 * MS);
         assert_eq!(game.line().report().silent, Some(Stop::Stale));
         until_quiet(&stick).saturating_duration_since(last)

@@ -40,7 +40,7 @@ pub(crate) use joint_state::{JointState, Joints, relax, solve};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Joint<D: Dim> {
-    /// Attachment points, on two different objects. At least one of these objects is a soft or rigid body.
+    /// Attachment points. Not two points of the world, and not twice the same rigid body; both may be on one soft body.
     pub anchors: [JointAnchor<D>; 2],
     /// Behaviour: pin, spring or rope.
     pub kind: JointKind,
@@ -67,6 +67,21 @@ impl<D: Dim> Joint<D> {
     /// Returns a rope of a maximum length [m].
     pub fn rope(first: JointAnchor<D>, second: JointAnchor<D>, length: f32) -> Self {
         Self::new([first, second], JointKind::Rope { length })
+    }
+
+    /// Returns a spring with a stiffness [N/m], a damping [N s/m] and a rest length [m].
+    pub fn spring(
+        [first, second]: [JointAnchor<D>; 2],
+        stiffness: f32,
+        damping: f32,
+        length: f32,
+    ) -> Self {
+        let kind = JointKind::Spring {
+            stiffness,
+            damping,
+            length,
+        };
+        Self::new([first, second], kind)
     }
 
     /// Returns the joint with a breaking force [N].

@@ -95,6 +95,8 @@ pub trait DimVector:
     + IndexMut<usize>
     + Sum
 {
+    /// Number of coordinates.
+    const N: usize;
     /// Zero vector.
     const ZERO: Self;
     /// Unit vector of the first axis.
@@ -123,8 +125,9 @@ pub trait DimVector:
 
 /// Implements [`DimVector`] by the methods of a `glam` vector.
 macro_rules! dim_vector {
-    ($vector:ident, $to:expr, $from:expr) => {
+    ($vector:ident, $count:expr, $to:expr, $from:expr) => {
         impl DimVector for $vector {
+            const N: usize = $count;
             const ZERO: Self = Self::ZERO;
             const X: Self = Self::X;
             const Y: Self = Self::Y;
@@ -162,10 +165,13 @@ macro_rules! dim_vector {
     };
 }
 
-dim_vector!(Vec2, |vector: Vec2| vector.extend(0.0), |vector: Vec3| {
-    vector.truncate()
-});
-dim_vector!(Vec3, |vector: Vec3| vector, |vector: Vec3| vector);
+dim_vector!(
+    Vec2,
+    2,
+    |vector: Vec2| vector.extend(0.0),
+    |vector: Vec3| { vector.truncate() }
+);
+dim_vector!(Vec3, 3, |vector: Vec3| vector, |vector: Vec3| vector);
 
 /// Angular velocity or torque of a dimension: [`f32`] or [`Vec3`].
 pub trait DimAngular:

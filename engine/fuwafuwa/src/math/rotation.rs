@@ -64,7 +64,12 @@ impl Rotation {
 
     /// Rotates a vector. In 2D only the part of the rotation about the third axis is applied.
     pub fn apply<V: DimVector>(self, vector: V) -> V {
-        let turned = self.turn(vector.to_vec3().as_dvec3());
+        let rotation = if V::N == 2 {
+            self.in_third_axis()
+        } else {
+            self
+        };
+        let turned = rotation.turn(vector.to_vec3().as_dvec3());
         V::from_vec3(turned.as_vec3())
     }
 
@@ -113,12 +118,20 @@ impl Rotation {
 
     /// Returns the rotation itself in 3D, and only its part about the third axis in 2D.
     pub(crate) fn seen_in<D: Dim>(self) -> Self {
+        match D::N {
+            2 => self.in_third_axis(),
+            _ => self,
+        }
+    }
+
+    /// Returns the part of the rotation about the third axis.
+    fn in_third_axis(self) -> Self {
         let [x, y, z, w] = self.quaternion;
         // Leaves a rotation that is already about the third axis as it is: normalising it again would change
         // its last bits.
-        match D::N == 2 && (x, y) != (0.0, 0.0) {
-            true => Self::unit([0.0, 0.0, z, w]),
-            false => self,
+        match (x, y) == (0.0, 0.0) {
+            true => self,
+            false => Self::unit([0.0, 0.0, z, w]),
         }
     }
 
@@ -163,6 +176,7 @@ fn product([x, y, z, w]: [f64; 4], [bx, by, bz, bw]: [f64; 4]) -> [f64; 4] {
 mod tests {
     use super::*;
     use crate::foundation::dim::Dim2;
+    use glam::Vec2;
     use std::f32::consts::PI;
 
     #[test]
@@ -175,6 +189,16 @@ mod tests {
         assert!(one.abs_diff_eq(second.apply(first.apply(vector)), 1e-5));
         assert!(one.abs_diff_eq(first.then(second).apply(vector), 1e-5));
         assert_eq!(first.then(first.inverse()), Rotation::NONE);
+    }
+
+    #[test]
+    fn apply_in_2d_uses_part_about_third_axis() {
+        let tilted = Rotation::about(Vec3::new(0.3, -0.2, 1.0), 0.9);
+        let turned = tilted.apply(Vec2::X);
+        assert!((turned.length() - 1.0).abs() < 1e-6);
+        assert_eq!(turned, tilted.seen_in::<Dim2>().apply(Vec2::X));
+        let out_of_plane = Rotation::about(Vec3::X, 0.5 * PI);
+        assert_eq!(out_of_plane.apply(Vec2::Y), Vec2::Y);
     }
 
     #[test]

@@ -9,9 +9,9 @@ use glam::{Vec2, Vec3};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Velocity<D: Dim> {
-    /// Linear velocity of the centre of mass [m/s].
+    /// Linear velocity [m/s] of the centre of mass, or of the local origin of a kinematic or coupled body.
     pub linear: D::Vector,
-    /// Angular velocity about the centre of mass [rad/s]; in 2D positive is counterclockwise.
+    /// Angular velocity about that point [rad/s]; in 2D positive is counterclockwise.
     pub angular: D::Angular,
 }
 
@@ -84,7 +84,7 @@ impl<D: Dim> Impulse<D> {
         }
     }
 
-    /// Returns the impulse with a radius [m].
+    /// Returns the impulse spread over the nodes within `radius` [m] of its point.
     #[must_use]
     pub fn within(self, radius: f32) -> Self {
         Self { radius, ..self }

@@ -22,7 +22,8 @@ impl<'a, D: Dim> RigidBodyRef<'a, D> {
         Self { state, dim }
     }
 
-    /// Returns a definition of the body with its present pose and velocity, for example to add a copy.
+    /// Returns a definition of the body with its present pose, velocity and target, for
+    /// example to add a copy. Sleep and reactions are not part of it.
     pub fn definition(&self) -> RigidBody<D> {
         self.state.definition()
     }
@@ -62,12 +63,12 @@ impl<'a, D: Dim> RigidBodyRef<'a, D> {
         Velocity::from(self.state.twist())
     }
 
-    /// Returns the target position [m].
+    /// Returns the target position of a kinematic or coupled body [m]; without meaning for others.
     pub fn target_position(&self) -> D::Vector {
         D::Vector::from_vec3(self.state.target_position())
     }
 
-    /// Returns the target rotation.
+    /// Returns the target rotation of a kinematic or coupled body; without meaning for others.
     pub fn target_rotation(&self) -> Rotation {
         self.state.target_rotation()
     }

@@ -96,6 +96,8 @@ impl<D: Dim> From<&RigidBody<D>> for RigidState {
         let rotation = body.rotation.seen_in::<D>();
         let Twist { linear, angular } = body.velocity.twist();
         let local_shape = body.shape.solid();
+        let target = body.target_position.unwrap_or(body.position).to_vec3();
+        let target_rotation = body.target_rotation.map(Rotation::seen_in::<D>);
         let mut state = Self {
             friction: body.friction,
             restitution: body.restitution,
@@ -115,9 +117,9 @@ impl<D: Dim> From<&RigidBody<D>> for RigidState {
             rotation_before: rotation,
             inertia: body.motion_type.inertia::<D>(&local_shape),
             inverse_inertia: [Vec3::ZERO; 3],
-            target: position,
-            target_rotation: rotation,
-            target_before: position,
+            target,
+            target_rotation: target_rotation.unwrap_or(rotation),
+            target_before: target,
             target_velocity: Vec3::ZERO,
             reactions: Vec::new(),
         };
@@ -128,14 +130,17 @@ impl<D: Dim> From<&RigidBody<D>> for RigidState {
 }
 
 impl RigidState {
-    /// Returns the definition of the body with its present pose and velocity.
+    /// Returns the definition of the body with its present pose, velocity and target.
     pub fn definition<D: Dim>(&self) -> RigidBody<D> {
+        let follows = self.follows_target();
         RigidBody {
             motion_type: self.motion_type,
             shape: Shape::of(&self.local_shape),
             position: D::Vector::from_vec3(self.position),
             rotation: self.rotation,
             velocity: Velocity::from(self.twist()),
+            target_position: follows.then(|| D::Vector::from_vec3(self.target)),
+            target_rotation: follows.then_some(self.target_rotation),
             friction: self.friction,
             restitution: self.restitution,
             layers: self.layers,

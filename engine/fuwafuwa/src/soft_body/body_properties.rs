@@ -11,7 +11,7 @@ use crate::topology::grid::VoxelGrid;
 pub struct BodyProperties {
     /// Damping ratio of the slowest mode; mean over the voxels.
     pub damping: f64,
-    /// Angular frequency ω = π √(Y/ρ) / width of the slowest mode [1/s].
+    /// Angular frequency of the slowest mode [1/s]: ω = π √(Y/ρ) / w, where w is the width of the body.
     pub slow: f64,
     /// Friction coefficient; mean over the voxels.
     pub friction: f32,

@@ -8,14 +8,14 @@ use crate::foundation::ids::NodeId;
 impl<D: Dim> SoftBody<D> {
     pub(crate) fn make_room(&mut self) {
         let Self {
-            topology: truth,
+            topology,
             state,
             cache,
         } = self;
-        state.make_room(truth.mesh.node_capacity());
-        cache.bare.resize(truth.mesh.element_capacity(), 0);
-        cache.bound.resize(truth.mesh.element_capacity(), 0);
-        truth.pieces.make_room(&truth.mesh);
+        state.make_room(topology.mesh.node_capacity());
+        cache.bare.resize(topology.mesh.element_capacity(), 0);
+        cache.bound.resize(topology.mesh.element_capacity(), 0);
+        topology.pieces.make_room(&topology.mesh);
     }
 
     /// Fixes a new node if all nodes from which its state is interpolated are fixed.

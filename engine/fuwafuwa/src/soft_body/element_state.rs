@@ -165,9 +165,9 @@ impl<D: Dim> SoftBody<D> {
         undone.map_or(IDENTITY, |undone| undone.map(|row| row.as_dvec3()))
     }
 
-    /// Plastic strain of an element, or `None` if the element was removed. 0 = no plastic deformation, which
-    /// is always so in elastic materials; 0.5 = permanently compressed along some axis to 1 / 1.5 of its
-    /// width. In 2D, 0.5 may equally be a permanent stretch to 1.5 times the width.
+    /// Returns the plastic strain of an element, or `None` if the element was removed. It is the largest
+    /// permanent compression along any axis: 0 = none, 0.5 = to 1/1.5 of the width. Plastic flow preserves the
+    /// volume, so in 2D the other axis is then stretched to 1.5 times its width.
     pub fn plastic_strain(&self, id: ElementId) -> Option<f32> {
         self.topology.mesh.element(id)?;
         let most = 1.0 / plastic_stiffness_factor::<D>(&self.undone(id));
@@ -196,26 +196,24 @@ impl<D: Dim> SoftBody<D> {
     #[inline(never)]
     pub fn energies(&self, gravity: D::Vector) -> Vec<Energy> {
         let Self {
-            topology: truth,
-            state,
-            ..
+            topology, state, ..
         } = self;
-        let mut energies = vec![Energy::default(); truth.pieces.list.len()];
+        let mut energies = vec![Energy::default(); topology.pieces.list.len()];
         let pull = f64::from(state.gravity_scale);
-        for (id, _) in truth.mesh.nodes() {
+        for (id, _) in topology.mesh.nodes() {
             let (at, velocity, mass) = self.node_state(id);
             let [at, velocity, gravity] =
                 [at, velocity, gravity].map(|vector| vector.to_vec3().as_dvec3());
             let mass = f64::from(mass);
-            let energy = &mut energies[truth.pieces.of_node(id).index()];
+            let energy = &mut energies[topology.pieces.of_node(id).index()];
             energy.kinetic += 0.5 * mass * velocity.dot(velocity);
             energy.gravitational -= mass * pull * gravity.dot(at);
         }
-        for (id, _) in truth.mesh.elements() {
+        for (id, _) in topology.mesh.elements() {
             let strained = self
                 .element_state(id)
                 .expect("`elements` returns live elements");
-            energies[truth.pieces.of_element(id).index()].elastic += strained.energy;
+            energies[topology.pieces.of_element(id).index()].elastic += strained.energy;
         }
         energies
     }

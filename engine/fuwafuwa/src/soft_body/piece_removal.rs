@@ -17,28 +17,28 @@ impl<D: Dim> SoftBody<D> {
 
     /// Removes pieces, given in ascending order, of which at least one exists; returns all changes.
     pub(crate) fn take_out(&mut self, pieces: &[PieceId]) -> Changes {
-        let truth = &mut self.topology;
-        let of_element = |id: &ElementId| truth.pieces.of_element(*id);
-        let elements = truth.mesh.elements().map(|(id, _)| id);
+        let topology = &mut self.topology;
+        let of_element = |id: &ElementId| topology.pieces.of_element(*id);
+        let elements = topology.mesh.elements().map(|(id, _)| id);
         let elements: Vec<ElementId> = elements
             .filter(|id| pieces.binary_search(&of_element(id)).is_ok())
             .collect();
-        let own = elements.iter().filter_map(|&id| truth.mesh.element(id));
-        let voxels = own.flat_map(|element| truth.mesh.voxels(element));
+        let own = elements.iter().filter_map(|&id| topology.mesh.element(id));
+        let voxels = own.flat_map(|element| topology.mesh.voxels(element));
         let voxels: Vec<Point> = voxels.collect();
-        truth.grid.remove_voxels(&voxels);
-        truth.connectivity.take_out(&voxels);
-        truth
+        topology.grid.remove_voxels(&voxels);
+        topology.connectivity.take_out(&voxels);
+        topology
             .hierarchy
-            .take_out(&truth.grid, &truth.connectivity, &voxels);
-        let nodes = truth.mesh.take_out(&truth.connectivity, &elements);
+            .take_out(&topology.grid, &topology.connectivity, &voxels);
+        let nodes = topology.mesh.take_out(&topology.connectivity, &elements);
         for &piece in pieces {
-            let piece = &mut truth.pieces.list[piece];
+            let piece = &mut topology.pieces.list[piece];
             // Marks the piece as asleep, too, so that no code treats a removed piece as moving.
             (piece.removed, piece.asleep) = (true, true);
         }
         let blocks = &mut self.state.blocks;
-        blocks.update(&truth.mesh, &truth.grid, &elements, &[], |_| false);
+        blocks.update(&topology.mesh, &topology.grid, &elements, &[], |_| false);
         self.find_breakable(&nodes);
         self.cache.awake_is_stale = true;
         self.refresh_awake();

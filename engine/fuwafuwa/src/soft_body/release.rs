@@ -82,8 +82,8 @@ impl<D: Dim> SoftBody<D> {
         changes
     }
 
-    /// Returns the elements around the given points, in groups. Two elements are in one group if they are
-    /// around the same point, or connected through a chain of such elements. Ids ascend within each group.
+    /// Returns the elements around the given points, sorted into places. Points that have an element in common
+    /// belong to the same place, directly or through other points. Ids ascend within each place.
     fn places_around(&self, points: &[Point]) -> Vec<Vec<ElementId>> {
         let around = |&at: &Point| self.topology.mesh.owners_around(at, D::ALL_CORNERS);
         let elements = points.iter().flat_map(around);

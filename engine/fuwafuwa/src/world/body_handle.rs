@@ -77,6 +77,9 @@ impl<D: Dim> World<D> {
     /// handles and state, except that some wake: sleeping objects in contact with a removed body, and the
     /// bodies of a removed joint. The rigid body that holds a removed knife stays.
     ///
+    /// A rigid body, a joint or a knife is returned as its definition, which can be added again under a new handle.
+    /// The definition of a joint has its anchors where they were when the joint was added.
+    ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
     pub fn remove<H: Removable<D>>(&mut self, handle: H) -> Result<H::Item, Error> {

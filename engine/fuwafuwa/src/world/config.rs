@@ -19,8 +19,9 @@ pub const MIN_TICK: f32 = 1.0 / 240.0;
 /// Longest tick length [s]. Kinematic targets, embedded spheres and sleep are updated once per tick, and a
 /// longer tick would delay them visibly.
 pub const MAX_TICK: f32 = 1.0 / 30.0;
-/// Fracture and damping rounds per second: one for every four of the usual 960 substeps. The interval is
-/// about the time in which an overloaded node fails.
+/// Number of times per second that nodes are tested for fracture and that damping is applied: once in four of
+/// the usual 960 substeps. An overloaded node takes about this interval to fail, so testing more often would
+/// gain little.
 const ROUNDS: f64 = 240.0;
 
 /// Configuration of a world.

@@ -39,9 +39,9 @@ impl<D: Dim> Default for ContactSums<D> {
 }
 
 impl<D: Dim> ContactSums<D> {
-    /// Adds the normal impulse [N s] and the approach speed [m/s] of a contact point to the sum of its pair.
-    /// The closure returns the position [m], and the normal from the second object towards the first. It is
-    /// called only if the impulse is the largest of the pair so far.
+    /// Adds the normal impulse [N s] of a contact point to the sum of its pair, and keeps the highest approach
+    /// speed [m/s]. `point_and_normal` returns the position [m], and the normal from the second object towards
+    /// the first. It is called only if the impulse is the largest of the pair so far.
     fn add(
         &mut self,
         objects: [ObjectRef; 2],

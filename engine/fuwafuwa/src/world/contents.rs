@@ -44,7 +44,7 @@ impl<D: Dim> World<D> {
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, the body is fixed or dynamic, or the target is not finite or
-    /// beyond [`FARTHEST`](crate::rigid_body::FARTHEST). The target then stays unchanged.
+    /// beyond ±1e6 m. The target then stays unchanged.
     pub fn set_target_position(
         &mut self,
         rigid: RigidBodyHandle,

@@ -37,7 +37,8 @@ pub struct Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    /// Returns a target for plain triangles: no vertex buffers, no depth, no blending, one sample per pixel.
+    /// Returns pipeline settings for plain triangles drawn into textures of these formats: no vertex buffers,
+    /// no depth, no blending, one sample per pixel.
     pub fn of(formats: &'a [TextureFormat]) -> Self {
         Self {
             buffers: &[],

@@ -136,7 +136,7 @@ impl Rest {
         rest
     }
 
-    /// Returns whether these offsets belong to a grid.
+    /// Returns whether these offsets were computed for this grid.
     pub fn fits(&self, grid: &VoxelGrid<Dim3>) -> bool {
         self.grid.as_ref() == Some(grid)
     }

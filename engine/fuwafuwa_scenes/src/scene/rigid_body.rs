@@ -218,11 +218,7 @@ impl RigidBodyText {
         };
         let added = self.add_to(&mut world).ok();
         let made = added.and_then(|id| world.rigid_body(id).ok());
-        let all = |body: RigidBodyRef<'_, D>| {
-            let target = (body.target_position(), body.target_rotation());
-            (body.definition(), body.follows_target().then_some(target))
-        };
-        made.is_some_and(|made| all(made) == all(body))
+        made.is_some_and(|made| made.definition() == body.definition())
     }
 
     fn by_fields<D: Dim>(body: RigidBodyRef<'_, D>) -> Option<Self> {

@@ -48,12 +48,7 @@ fn copy_into<D: Dim>(
     world: &mut World<D>,
     body: RigidBodyRef<'_, D>,
 ) -> Result<RigidBodyHandle, Error> {
-    let id = world.add_rigid_body(body.definition())?;
-    if body.follows_target() {
-        world.set_target_position(id, body.target_position())?;
-        world.set_target_rotation(id, body.target_rotation())?;
-    }
-    Ok(id)
+    world.add_rigid_body(body.definition())
 }
 
 fn world<D: Dim>(text: &str) -> Result<World<D>, FieldError> {

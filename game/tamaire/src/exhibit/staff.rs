@@ -129,7 +129,7 @@ impl Entrance {
     }
 }
 
-/// Whether the buttons that open the entrance are held.
+/// Returns whether the chord is held: the buttons that open the entry for staff while they are held together.
 pub fn is_chord(device: &Device) -> bool {
     let is_down = |index: &usize| device.buttons.get(*index).is_some_and(|button| button.down);
     match &device.pad {

@@ -15,7 +15,8 @@ use tamaire_play::{AnyRound, Level, Round};
 /// Line colour of a ghost in 2D.
 const GHOST: Color32 = Color32::from_rgba_premultiplied(42, 38, 56, 120);
 
-/// Sine of the camera's elevation above which bodies are cut from above instead of from the front.
+/// Sine of the camera's elevation above which the cutaway view removes the upper part of bodies instead of the
+/// front part.
 const DOWN: f32 = 0.8;
 
 /// Draws rounds in an egui window.

@@ -128,7 +128,8 @@ impl Spheres {
         numbers
     }
 
-    /// Applies the tears between two ticks; returns false if bodies changed in another way.
+    /// Updates the spheres for the tears since the last tick, and adds the affected spheres to `changed`.
+    /// Returns false if a body changed in another way; the caller must then rebuild all spheres.
     fn catch_up<D: Dim>(&mut self, bodies: &SoftBodies<D>, changed: &mut Vec<SphereId>) -> bool {
         if self.followed.len() != bodies.slot_count() {
             return false;

@@ -109,7 +109,8 @@ impl SpherePair {
         }
     }
 
-    /// Returns whether the pair must be stored: it has an impulse, or its spheres have met from outside.
+    /// Returns whether the pair must be stored: it has an impulse, or its spheres touched after having been
+    /// apart. Spheres that overlapped from the start need no entry.
     pub fn is_known(&self) -> bool {
         self.impulse.is_known() || self.met_in_front
     }

@@ -7,7 +7,6 @@ use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, JointHandle};
 use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::hash::hash_state;
-
 use crate::rigid_body::solid::flat;
 use crate::rigid_body::{FARTHEST, RigidBodies, is_within_reach};
 use crate::soft_body::SoftBodies;
@@ -161,9 +160,9 @@ impl JointState {
             _ => None,
         };
         if let Some(given) = wrong {
-            let expected = "on two different objects, at least one of them a body";
+            let expected = "not two points of the world, and not twice the same rigid body";
             return Err(Error::parameter(
-                "joint attached",
+                "joint anchors",
                 expected,
                 format_args!("{given}"),
             ));

@@ -31,7 +31,7 @@ impl EscapeContact {
     ) -> Option<Self> {
         let [a, b] = [captive.sphere, captive.exit];
         let both = [&spheres.list[a], &spheres.list[b]];
-        // Not 0, because it divides.
+        // At least 1e-9, because results divide by it.
         let length_of = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
         let out = both[1].outward::<D>(bodies.at(both[1].body).positions());
         let ahead = (both[0].radius + both[1].radius) / length_of(out);

@@ -49,14 +49,16 @@ hash_state! {
 
 impl<D: Dim> From<&Knife<D>> for KnifeState {
     fn from(knife: &Knife<D>) -> Self {
+        let [from, to] = knife.edge.map(D::Vector::to_vec3);
+        // In 2D the edge is the point between its ends.
+        let edge = match D::N {
+            2 => [(from + to) * 0.5; 2],
+            _ => [from, to],
+        };
         Self {
             radius: knife.radius,
             height: knife.height,
-            ..Self::new(
-                knife.holder,
-                knife.edge.map(D::Vector::to_vec3),
-                knife.toward.to_vec3(),
-            )
+            ..Self::new(knife.holder, edge, knife.toward.to_vec3())
         }
     }
 }

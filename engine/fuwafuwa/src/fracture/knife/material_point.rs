@@ -65,8 +65,8 @@ impl Spot {
         Some(body.velocity_of(&body.weights(element, self.at)))
     }
 
-    /// Maps world-space directions to directions at rest. In an undeformed element, a unit direction becomes
-    /// one voxel long.
+    /// Maps world-space directions to the undeformed body, in units of voxels: in an undeformed element, a
+    /// direction of length 1 keeps length 1 and is then one voxel long.
     pub fn directions<D: Dim, const COUNT: usize>(
         &self,
         body: &SoftBody<D>,

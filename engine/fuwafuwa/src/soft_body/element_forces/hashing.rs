@@ -1,4 +1,5 @@
-//! State of the batches in the hash of a world: that of snapshots, in the same order.
+//! Hash of the state of the element batches, for the hash of a world: the values that a snapshot stores, in the
+//! same order.
 
 use super::batch::{Batch, VACANT};
 use super::plastic_kernel::IDENTITY;

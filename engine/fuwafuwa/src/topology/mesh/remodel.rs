@@ -29,9 +29,9 @@ pub struct Remodelled {
 
 /// New node, and the old nodes from which it inherits its state, with weights that add up to 1.
 ///
-/// The weights are those by which a slot without a node distributes its share. So position, velocity and
-/// linear momentum are transferred exactly, and both sides of a face agree. The old ids are never new ids of
-/// the same remodelling.
+/// The weights are those with which an element interpolates a slot without a node from its nodes. So position,
+/// velocity and linear momentum are transferred exactly, and the elements on both sides of a face give the new
+/// node the same state. The old ids are never new ids of the same remodelling.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inheritance {
     /// New node.

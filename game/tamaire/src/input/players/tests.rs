@@ -244,7 +244,7 @@ fn each_device_belongs_to_one_player() {
     devices.sticks.devices.remove(0);
     assert_eq!(goals(&mut players, &devices, &MANNER)[1], None);
     assert_eq!(players.second(), None, "it was unplugged");
-    // In a level with a single hand, the second player gets no goal.
+    // In a level with a single hand, the second player has no hand, and so no target position is set.
     players.join(InputSource::Keys);
     let bindings = Bindings::default();
     let frame = players.frame(&devices, &bindings, &MANNER, &HANDS[..1], DEFAULT_TICK);
