@@ -307,7 +307,7 @@ fn error_names_line_and_field() {
         (
             "sensor = true",
             "sensor = true\ntarget_position = [1.0, 0.0, 0.0]",
-            "rigid_body 4, target_position: ",
+            "rigid_body 4, target_position: allowed only with motion_type = \"kinematic\" or \"coupled\"",
         ),
         (
             "body = 2, point",

@@ -100,17 +100,7 @@ impl RigidBodyText {
             return state::add_rigid_body(state, world);
         }
         let added = world.add_rigid_body(self.rigid_body::<D>()?);
-        let id = added.map_err(|error| FieldError::engine("shape", error))?;
-        if let Some(target) = self.target_position {
-            let target = vector_of::<D>("target_position", target)?;
-            let set = world.set_target_position(id, target);
-            set.map_err(|error| FieldError::new("target_position", error))?;
-        }
-        if let Some(target) = self.target_rotation {
-            let set = world.set_target_rotation(id, target);
-            set.map_err(|error| FieldError::new("target_rotation", error))?;
-        }
-        Ok(id)
+        added.map_err(|error| FieldError::engine("shape", error))
     }
 
     fn rigid_body<D: Dim>(&self) -> Result<RigidBody<D>, FieldError> {
@@ -133,10 +123,22 @@ impl RigidBodyText {
         if rotation != Rotation::NONE {
             body = body.rotated(rotation);
         }
+        let target = self.target_position;
+        let target = target.map(|target| vector_of::<D>("target_position", target));
+        let follows = matches!(
+            self.motion_type,
+            MotionTypeText::Kinematic | MotionTypeText::Coupled
+        );
+        let expected = "allowed only with motion_type = \"kinematic\" or \"coupled\"";
+        require(follows || target.is_none(), "target_position", expected)?;
+        let good = follows || self.target_rotation.is_none();
+        require(good, "target_rotation", expected)?;
         let is_dynamic = self.motion_type == MotionTypeText::Dynamic;
         let usual = if is_dynamic { 0.5 } else { 0.2 };
         Ok(RigidBody {
             velocity: self.velocity()?,
+            target_position: target.transpose()?,
+            target_rotation: self.target_rotation,
             friction: self.friction.unwrap_or(usual),
             restitution: self.restitution.unwrap_or(0.0),
             is_sensor: self.sensor,
@@ -228,6 +230,8 @@ impl RigidBodyText {
             position,
             rotation,
             velocity,
+            target_position,
+            target_rotation,
             friction,
             restitution,
             layers,
@@ -244,6 +248,10 @@ impl RigidBodyText {
             rotation: (rotation != Rotation::NONE).then_some(rotation),
             velocity: unless_zero(velocity.linear.to_vec3()),
             angular_velocity: unless_zero(velocity.angular.to_vec3()),
+            target_position: { target_position }
+                .filter(|target| *target != position)
+                .map(numbers),
+            target_rotation: target_rotation.filter(|target| *target != rotation),
             friction: Some(friction),
             restitution: (restitution != 0.0).then_some(restitution),
             sensor: is_sensor,
@@ -280,11 +288,6 @@ impl RigidBodyText {
                 });
             }
             Shape::OrientedBox { .. } => return None,
-        }
-        if body.follows_target() {
-            let (target, turned) = (body.target_position(), body.target_rotation());
-            text.target_position = (target != position).then_some(numbers(target));
-            text.target_rotation = (turned != rotation).then_some(turned);
         }
         match motion_type {
             MotionType::Fixed => {}

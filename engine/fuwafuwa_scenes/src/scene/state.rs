@@ -15,7 +15,7 @@ pub(super) fn of_body<D: Dim>(body: &SoftBody<D>, settings: WorldConfig<D>) -> O
 /// Encodes a rigid body.
 pub(super) fn of_rigid_body<D: Dim>(body: RigidBodyRef<'_, D>) -> Option<String> {
     let mut world = World::new(WorldConfig::default()).ok()?;
-    copy_into(&mut world, body).ok()?;
+    world.add_rigid_body(body.definition()).ok()?;
     Some(BASE64.encode(snapshot::save(&world)))
 }
 
@@ -40,15 +40,8 @@ pub(super) fn add_rigid_body<D: Dim>(
         let expected = "expected the snapshot of a world with one rigid body";
         return Err(FieldError::new("state", expected));
     };
-    copy_into(world, body).map_err(|error| FieldError::new("state", error))
-}
-
-/// Adds a copy of a rigid body of another world, together with the target of the body.
-fn copy_into<D: Dim>(
-    world: &mut World<D>,
-    body: RigidBodyRef<'_, D>,
-) -> Result<RigidBodyHandle, Error> {
-    world.add_rigid_body(body.definition())
+    let added = world.add_rigid_body(body.definition());
+    added.map_err(|error| FieldError::new("state", error))
 }
 
 fn world<D: Dim>(text: &str) -> Result<World<D>, FieldError> {
