@@ -3,7 +3,7 @@
 use super::error::FieldError;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
-use fuwafuwa::{Dim, Error, RigidBodyHandle, RigidBodyRef, SoftBody, World, WorldConfig, snapshot};
+use fuwafuwa::{Dim, RigidBodyHandle, RigidBodyRef, SoftBody, World, WorldConfig, snapshot};
 
 /// Encodes a soft body.
 pub(super) fn of_body<D: Dim>(body: &SoftBody<D>, settings: WorldConfig<D>) -> Option<String> {
