@@ -1,7 +1,11 @@
 //! Bots use the same input as human players, so whatever they achieve is possible for a player.
+//!
+//! Each bot plays every level with a basket. The seeds follow from the names of the level and the bot, so that
+//! nobody chooses them by their results. A bot must win most of its rounds by its own route, except on the
+//! levels in [`LOST`].
 
+use fuwafuwa::inspect::Hash;
 use fuwafuwa::{Dim, Dim2, Dim3};
-use std::ops::RangeInclusive;
 use std::sync::Arc;
 use std::thread;
 use tamaire_play::level::{NAMED, NAMED_3D};
@@ -10,27 +14,42 @@ use tamaire_play::{Bot, BotKind, Level, Outcome, Round, Route};
 /// Time limit of a round: a minute [ticks].
 const MINUTE: usize = 60 * 60;
 
-/// Bot and route that win each level as intended.
-const WINNERS: [(&str, BotKind, Route); 12] = [
-    ("classic", BotKind::Squeeze, Route::Squeeze),
-    ("gravity", BotKind::Squeeze, Route::Squeeze),
-    ("neck", BotKind::Squeeze, Route::Squeeze),
-    ("twins", BotKind::Squeeze, Route::Squeeze),
-    ("core", BotKind::Squeeze, Route::Squeeze),
-    ("donut", BotKind::Squeeze, Route::Squeeze),
-    ("cat", BotKind::Squeeze, Route::Squeeze),
-    ("rubber", BotKind::Squeeze, Route::Squeeze),
-    ("biscuit", BotKind::Shave, Route::Shave),
-    ("classic-3d", BotKind::Squeeze, Route::Squeeze),
-    ("hoop", BotKind::Squeeze, Route::Squeeze),
-    ("pudding", BotKind::Squeeze, Route::Squeeze),
+/// Bots with a route of their own: name, kind and route.
+const BOTS: [(&str, BotKind, Route); 2] = [
+    ("squeeze", BotKind::Squeeze, Route::Squeeze),
+    ("shave", BotKind::Shave, Route::Shave),
 ];
 
-/// Returns the outcomes of a bot's rounds of a level, by seed. Each round has its own thread.
+/// Levels that a bot is known to lose: bot, level and reason. The bot must not win most of its rounds there.
+/// On every other level with a basket it must win most of them.
+const LOST: [(&str, &str, &str); 3] = [
+    ("shave", "rubber", "rubber does not tear"),
+    (
+        "squeeze",
+        "biscuit",
+        "the biscuit is brittle: it breaks in the mouth, and most rounds are won by shaving",
+    ),
+    (
+        "shave",
+        "pudding",
+        "the torn pudding either crumbles, or a minute is too short to push it in",
+    ),
+];
+
+/// Minimum share of all rounds on levels off the list that the bots win. They win 96 %. This limit detects
+/// bots that become weaker on many levels, even if they still win most rounds on each.
+const WON_TOGETHER: f32 = 0.9;
+
+/// Returns the seed of a round, the same on every machine: an FNV-1a hash.
+fn seed(id: &str, bot: &str, round: usize) -> u64 {
+    Hash::of(format!("{id} {bot} {round}").as_bytes())
+}
+
+/// Returns the outcomes of the first rounds of a bot on a level. Each round has its own thread.
 fn outcomes(
     id: &str,
-    kind: BotKind,
-    seeds: RangeInclusive<u64>,
+    (bot, kind): (&str, BotKind),
+    rounds: usize,
     ticks: usize,
 ) -> Vec<Option<Outcome>> {
     let level = Arc::new(Level::open(id).unwrap());
@@ -39,11 +58,11 @@ fn outcomes(
         _ => outcome::<Dim3>,
     };
     thread::scope(|scope| {
-        let start = |seed| {
-            let level = level.clone();
+        let start = |round| {
+            let (level, seed) = (level.clone(), seed(id, bot, round));
             scope.spawn(move || play(level, kind, seed, ticks))
         };
-        let threads: Vec<_> = seeds.map(start).collect();
+        let threads: Vec<_> = (0..rounds).map(start).collect();
         threads
             .into_iter()
             .map(|thread| thread.join().unwrap())
@@ -66,84 +85,100 @@ fn outcome<D: Dim>(level: Arc<Level>, kind: BotKind, seed: u64, ticks: usize) ->
     round.progress().outcome
 }
 
-/// Checks that a bot wins all rounds of a level by a route.
-fn wins(id: &str, kind: BotKind, route: Route, seeds: RangeInclusive<u64>) {
-    let outcomes = outcomes(id, kind, seeds.clone(), MINUTE);
-    let others: Vec<_> = seeds
-        .zip(outcomes)
-        .filter(|(_, outcome)| outcome.map(|outcome| outcome.route) != Some(route))
-        .collect();
-    assert!(others.is_empty(), "{id}, {kind:?}, by seed: {others:?}");
+/// Returns the names of the levels with a basket.
+fn levels() -> Vec<&'static str> {
+    let all = NAMED.iter().chain(&NAMED_3D).map(|(id, _)| *id);
+    all.filter(|id| Level::open(id).unwrap().game().basket.is_some())
+        .collect()
+}
+
+fn is_lost(bot: &str, id: &str) -> bool {
+    LOST.iter()
+        .any(|(known, level, _)| (*known, *level) == (bot, id))
+}
+
+/// Lets each bot play every level, and checks its results against [`LOST`]. Returns the share of all rounds on
+/// levels off the list that were won.
+///
+/// Most means more than half. The weakest bot off the list, the shaving one on Twins, wins three quarters of
+/// its rounds. It then wins most of 20 rounds with a probability of 98.6 %, so a change of the last bits of the
+/// engine hardly ever fails the test. On the levels of the list the bots win at most 3 of 20 rounds.
+fn check_all(rounds: impl Fn(&str) -> usize) -> f32 {
+    let mut failures = Vec::new();
+    let (mut won, mut played) = (0, 0);
+    for id in levels() {
+        let rounds = rounds(id);
+        for (bot, kind, route) in BOTS {
+            let outcomes = outcomes(id, (bot, kind), rounds, MINUTE);
+            let routes = outcomes.iter().flatten().map(|outcome| outcome.route);
+            let wins = routes.filter(|&won| won == route).count();
+            println!("{id:>12} {bot:>8}: {wins} of {rounds}");
+            let is_lost = is_lost(bot, id);
+            if !is_lost {
+                (won, played) = (won + wins, played + rounds);
+            }
+            if (2 * wins > rounds) == is_lost {
+                failures.push(format!(
+                    "{bot} on {id}, listed: {is_lost}, won: {wins} of {rounds}, {outcomes:?}"
+                ));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    won as f32 / played as f32
 }
 
 #[test]
-fn squeezing_wins_twenty_of_twenty_rounds() {
-    wins("classic", BotKind::Squeeze, Route::Squeeze, 1..=20);
+fn bots_win_most_of_a_few_rounds_except_on_listed_levels() {
+    check_all(|id| match Level::open(id).unwrap().scene().dim {
+        2 => 5,
+        _ => 3,
+    });
 }
 
 #[test]
-fn shaving_wins_twenty_of_twenty_rounds() {
-    wins("classic", BotKind::Shave, Route::Shave, 1..=20);
+#[ignore = "takes minutes: cargo test --release -p tamaire_play --test bots -- --ignored --nocapture"]
+fn bots_win_most_of_twenty_rounds_except_on_listed_levels() {
+    let share = check_all(|_| 20);
+    assert!(share >= WON_TOGETHER, "{share} of all rounds");
 }
 
 #[test]
-fn both_routes_win_twenty_of_twenty_rounds_in_3d() {
-    wins("classic-3d", BotKind::Squeeze, Route::Squeeze, 1..=20);
-    wins("classic-3d", BotKind::Shave, Route::Shave, 1..=20);
-}
-
-/// Returns the names of the levels that offer shaving.
-fn shaved(named: &[(&'static str, &str)]) -> Vec<&'static str> {
-    let offers = |id: &&str| Level::open(id).unwrap().routes().contains(&Route::Shave);
-    named.iter().map(|(id, _)| *id).filter(offers).collect()
-}
-
-/// Checks that the shaving bot wins at least `least` rounds of a level by shaving.
-fn is_shaved(id: &str, seeds: RangeInclusive<u64>, least: usize) {
-    let outcomes = outcomes(id, BotKind::Shave, seeds, MINUTE);
-    let won = outcomes.iter().flatten();
-    let count = won.filter(|won| won.route == Route::Shave).count();
-    assert!(count >= least, "{id}: {count}, {outcomes:?}");
-}
-
-/// Levels on which the shaving bot may win fewer than eighteen of twenty rounds, with the required number of
-/// wins.
-const FALLS_SHORT: [(&str, usize); 1] = [("twins", 12)];
-
-#[test]
-fn shaving_wins_every_2d_level_that_offers_it() {
-    for id in shaved(&NAMED) {
-        is_shaved(id, 2..=3, 2);
+fn both_bots_win_all_of_twenty_rounds_on_the_first_levels() {
+    for (id, _) in [NAMED[0], NAMED_3D[0]] {
+        for (bot, kind, route) in BOTS {
+            let outcomes = outcomes(id, (bot, kind), 20, MINUTE);
+            let is_won = |outcome: &Option<Outcome>| outcome.map(|won| won.route) == Some(route);
+            assert!(outcomes.iter().all(is_won), "{id}, {bot}: {outcomes:?}");
+        }
     }
 }
 
 #[test]
-#[ignore = "takes minutes: cargo test --release -p tamaire_play --test bots -- --ignored"]
-fn shaving_wins_eighteen_of_twenty_rounds_on_every_level_that_offers_it() {
-    for id in shaved(&NAMED).into_iter().chain(shaved(&NAMED_3D)) {
-        let short = FALLS_SHORT.iter().find(|(known, _)| *known == id);
-        is_shaved(id, 1..=20, short.map_or(18, |(_, least)| *least));
+fn levels_offer_the_routes_by_which_bots_win() {
+    for id in levels() {
+        let level = Level::open(id).unwrap();
+        let winners = BOTS.iter().filter(|(bot, ..)| !is_lost(bot, id));
+        let routes: Vec<Route> = winners.map(|(.., route)| *route).collect();
+        assert_eq!(level.routes(), routes, "{id}");
     }
 }
 
 #[test]
-fn every_level_with_a_basket_is_won_as_intended() {
-    for (id, _) in NAMED.iter().chain(&NAMED_3D) {
-        let has_basket = Level::open(id).unwrap().game().basket.is_some();
-        let is_listed = WINNERS.iter().any(|(known, ..)| known == id);
-        assert_eq!(has_basket, is_listed, "{id}");
-    }
-    for (id, kind, route) in WINNERS {
-        let is_flat = NAMED.iter().any(|(known, _)| *known == id);
-        wins(id, kind, route, if is_flat { 1..=2 } else { 1..=1 });
+fn list_of_lost_levels_names_bots_and_levels_that_exist() {
+    for (bot, id, reason) in LOST {
+        assert!(BOTS.iter().any(|(known, ..)| *known == bot), "{bot}");
+        assert!(levels().contains(&id), "{id}");
+        assert!(!reason.is_empty(), "{bot} on {id}");
     }
 }
 
 #[test]
 fn idle_bot_never_wins_and_random_bot_rarely() {
-    for (id, ..) in WINNERS {
-        assert_eq!(outcomes(id, BotKind::Idle, 1..=1, 600), [None], "{id}");
+    for id in levels() {
+        let idle = outcomes(id, ("idle", BotKind::Idle), 1, 600);
+        assert_eq!(idle, [None], "{id}");
     }
-    let won = outcomes("classic", BotKind::Random, 1..=4, 1200);
+    let won = outcomes("classic", ("random", BotKind::Random), 4, 1200);
     assert!(won.iter().flatten().count() <= 1, "{won:?}");
 }
