@@ -464,6 +464,16 @@ mod tests {
     }
 
     #[test]
+    fn hash_of_an_unchanged_level_stays_the_same() {
+        for (id, hash) in [
+            ("classic", 0x1dac_fb28_8e52_f666),
+            ("pudding", 0xb61d_03e5_1f56_53b5),
+        ] {
+            assert_eq!(Level::open(id).unwrap().hash(), hash, "{id}");
+        }
+    }
+
+    #[test]
     fn worlds_built_from_one_level_are_independent_and_equal() {
         let level = Level::open("twins").unwrap();
         let built = level.scene.build::<Dim2>().unwrap();
