@@ -26,7 +26,7 @@ pub struct Geometry {
     rests: Vec<Rest>,
 }
 
-/// Index ranges of a body in [`SkinMesh::fans`].
+/// Index ranges of a body in the triangles of the skin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyParts {
     /// Triangle fans of the outlines. The fans wind a non-zero number of times around each point inside the
