@@ -4,7 +4,7 @@ use flate2::bufread::MultiGzDecoder;
 use fuwafuwa_scenes::import::{FilePosition, PositionedProblem, too_large, unexpected};
 use std::io::Read;
 
-/// Maximum size of a file and of its decompressed content [bytes]. Large enough for [`crate::MAX_VOXELS`]
+/// Maximum size of a file and of its decompressed content, in bytes. Large enough for [`crate::MAX_VOXELS`]
 /// 64-bit numbers and the bytes before them.
 pub const MAX_FILE_BYTES: u64 = (1 << 30) + (1 << 26);
 

@@ -19,7 +19,7 @@
 //! - [`exhibit`]: a public stand
 //! - [`screens`]: the screens and menus
 //! - [`app`]: the main loop
-//! - [`desktop`] and [`browser`]: entry points
+//! - [`desktop`] and `browser`: entry points
 //!
 //! Rules, levels, bots and replays are in the crate `tamaire_play`, which does not depend on a window. The window, its
 //! devices, its camera and the pace of ticks are in the crate `app_shell`.

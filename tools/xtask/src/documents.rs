@@ -7,8 +7,33 @@ use crate::shell::{Failure, cargo, root, show};
 use std::process::Stdio;
 
 /// Units that rustdoc takes for links.
-const UNITS: [&str; 14] = [
-    "m", "m²", "m³", "mm", "s", "ms", "N", "J", "Pa", "kg", "rad", "Hz", "W", "px",
+const UNITS: [&str; 26] = [
+    "m",
+    "m²",
+    "m³",
+    "mm",
+    "µm",
+    "ml",
+    "s",
+    "ms",
+    "min",
+    "days",
+    "ticks",
+    "N",
+    "J",
+    "Pa",
+    "kg",
+    "rad",
+    "Hz",
+    "W",
+    "px",
+    "pixels",
+    "voxels",
+    "points",
+    "characters",
+    "bytes",
+    "KiB",
+    "MiB",
 ];
 
 /// Builds the documentation.

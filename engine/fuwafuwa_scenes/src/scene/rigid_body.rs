@@ -237,9 +237,6 @@ impl RigidBodyText {
             layers,
             is_sensor,
             user_data,
-            // Where the target differs from the pose, the text does not reproduce the body.
-            target_position: _,
-            target_rotation: _,
         } = body.definition();
         let numbers = |vector: D::Vector| vector.to_vec3().to_array();
         let unless_zero = |vector: Vec3| (vector != Vec3::ZERO).then_some(vector.to_array());
