@@ -56,9 +56,9 @@ impl SpaceStage {
     }
 
     /// Frees the images that worlds are drawn into. The next call of [`Self::draw`] allocates them again.
-    pub fn forget_images(&self) {
+    pub fn release_images(&self) {
         if let Some(renderer) = &self.renderer {
-            lock(renderer).forget_images(&self.state.device);
+            lock(renderer).release_images(&self.state.device);
         }
     }
 }

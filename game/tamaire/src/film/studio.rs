@@ -129,7 +129,7 @@ impl Studio {
 
     /// Releases the render targets until the next picture. After a photo of a 2D world they take 20 MB.
     pub fn rest(&self) {
-        self.stage.forget_images();
+        self.stage.release_images();
         // Polling the device frees unused resources. A failed device reports its error at the next picture.
         let _polled = self.state.device.poll(PollType::Poll);
     }

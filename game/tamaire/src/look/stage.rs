@@ -62,10 +62,10 @@ impl Stage {
 
     /// Frees the images that worlds were drawn into. Call it only between frames; the next frame creates them
     /// again.
-    pub fn forget_images(&self) {
+    pub fn release_images(&self) {
         let device = &self.state.device;
         lock(&self.renderer).release_images(device);
-        self.space.forget_images();
+        self.space.release_images();
     }
 
     /// Draws a round.

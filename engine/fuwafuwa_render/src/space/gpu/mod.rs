@@ -143,7 +143,7 @@ impl Renderer {
     }
 
     /// Releases the intermediate images, like [`crate::Renderer::release_images`].
-    pub fn forget_images(&mut self, device: &Device) {
+    pub fn release_images(&mut self, device: &Device) {
         self.targets = Targets::new(device, &self.pipelines, [1, 1]);
     }
 
