@@ -72,7 +72,7 @@ impl Neighbours {
         }
     }
 
-    /// Returns the piece and voxel at an index.
+    /// Returns the piece and voxel of the sphere at index `at` of the columns.
     #[inline(always)]
     pub fn at(&self, at: usize) -> PieceSite {
         PieceSite {
@@ -98,8 +98,8 @@ impl Neighbours {
         if same == 0 {
             return 0;
         }
-        // Distance above the lower limit of a neighbour's coordinate. Below that limit it wraps around to a
-        // large value, which fails the test.
+        // Coordinates relative to `own − NEAR`, the lowest coordinate of a neighbour. Lower coordinates wrap
+        // around to large values, so that one comparison with 2 · NEAR tests both limits.
         let along = |axis: usize| {
             let column = u16x8::from_slice(simd, &self.voxels[axis][eight.clone()]);
             column - u16x8::splat(simd, own.voxel[axis].wrapping_sub(NEAR))

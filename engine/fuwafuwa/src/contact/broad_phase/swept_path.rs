@@ -4,8 +4,8 @@ use super::contact_sphere::SphereId;
 use super::sphere_pair::MARGIN;
 use crate::soft_body::element_forces::Row;
 
-/// Slack: distance by which a sphere may deviate from its path [voxels]. A larger value makes the lists
-/// longer, a smaller one searches more often.
+/// Slack: distance by which a sphere may deviate from its path before its pairs are searched again [voxels].
+/// A larger value makes the list of pairs longer; a smaller one makes searches more frequent.
 pub const SLACK: f32 = 0.35;
 
 /// Weight of a sphere's mean velocity along its last path in the predicted velocity; the present velocity has
@@ -45,7 +45,7 @@ impl Start {
     };
 
     /// Returns the predicted velocity of a sphere [m/s]. `self` is the start of the sphere's last path,
-    /// `here` its position [m] at the time `now` [s], and `velocity` its present velocity [m/s].
+    /// `here` the sphere's position [m] at the time `now` [s], and `velocity` its present velocity [m/s].
     pub fn expected(&self, here: Row, now: f32, velocity: Row) -> Row {
         let passed = now - self.time;
         if passed > 0.0 {
@@ -76,7 +76,8 @@ pub struct SweptSphere {
 }
 
 impl SweptSphere {
-    /// Returns whether two swept spheres come close within a time span.
+    /// Returns whether two swept spheres come close enough to make a pair within a time span. False if both
+    /// sleep.
     #[inline(always)]
     pub fn meets(&self, other: &Self, span: Span) -> bool {
         let closing = self.path.velocity - other.path.velocity;
@@ -84,7 +85,7 @@ impl SweptSphere {
         let apart = apart + closing * span.middle;
         let reach = widened(self.radius + other.radius);
         // Rejects most pairs: those too far apart to meet in any direction of motion. The comparison is false
-        // for NaN.
+        // for NaN, which rejects the pair.
         let furthest = reach + self.sweep + other.sweep;
         let is_near = apart.dot(apart) <= furthest * furthest;
         if !is_near || self.asleep && other.asleep {
@@ -98,8 +99,8 @@ impl SweptSphere {
     }
 }
 
-/// Returns the distance below which two paths make a pair [m], for spheres that touch at the distance
-/// `touching` [m].
+/// Returns the distance of the centres below which two swept spheres make a pair [m]. The spheres touch at
+/// the distance `touching` [m] of their centres.
 #[inline(always)]
 pub fn widened(touching: f32) -> f32 {
     (1.0 + MARGIN + 2.0 * SLACK) * touching
