@@ -7,8 +7,8 @@ use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 
 /// Maximum distance along each axis, in the undeformed body, between two spheres of a piece that count as
-/// neighbours [voxels]. The full search for pairs skips neighbours. It lists spheres up to 1 + MARGIN + 2
-/// SLACK = 2 voxels apart, so a smaller `NEAR` would let it list adjacent elements of an undeformed surface.
+/// neighbours [voxels]. The full search for pairs skips neighbours. Its search distance is 1 + MARGIN + 2
+/// SLACK = 2 voxels. With a smaller `NEAR`, it would list adjacent elements of an undeformed surface.
 pub const NEAR: u16 = 2;
 
 id! {
@@ -34,7 +34,8 @@ pub struct ContactSphere {
     pub radius: f32,
     /// Whether the sphere's piece sleeps.
     pub asleep: bool,
-    /// Bit mask of the bare faces of the voxel. Across each axis, the face on the low side has bit 2 · axis,
+    /// Bit mask of the bare faces of the voxel. On each axis, bit 2 · axis is the face on the low side, and
+    /// bit 2 · axis + 1 the face on the high side.
     /// and the face on the high side has bit 2 · axis + 1.
     bare: u8,
     /// Voxel of the element.

@@ -179,6 +179,7 @@ impl Captives {
 struct Exits {
     /// Numbers of the exit spheres, ascending.
     list: Vec<SphereId>,
+    /// Centres of the exit spheres [m].
     centres: Vec<Row>,
     bins: Bins,
     /// Radius within which the bins are searched for an exit [m].
@@ -231,7 +232,9 @@ struct Inner {
     captor: HostPiece,
     /// Number of elements in this piece.
     count: u32,
+    /// Mean position of the element's nodes [m].
     centre: Row,
+    /// Distance from `centre` to the farthest node [m].
     radius: f32,
 }
 

@@ -94,10 +94,12 @@ fn serialize_known<S: serde::Serializer>(list: &[NodePair], to: S) -> Result<S::
     serde::Serialize::serialize(&known.collect::<Vec<_>>(), to)
 }
 
-/// Allowed (`most`) and actual (`come`) movement of a rigid body since the last full search [m].
+/// Allowed and actual movement of a rigid body since the last full search.
 #[derive(Copy, Clone, Debug)]
 struct Leeway {
+    /// Distance that the rigid body may move before a full search is due [m].
     most: f32,
+    /// Upper bound of the distance that the rigid body has moved since the last full search [m].
     come: f32,
 }
 

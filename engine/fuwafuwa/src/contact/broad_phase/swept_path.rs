@@ -70,6 +70,7 @@ pub struct SweptSphere {
     pub path: Path,
     /// Upper bound of half the length of the path [m], relative to the mean velocity of all spheres.
     pub sweep: f32,
+    /// Radius of the sphere [m].
     pub radius: f32,
     pub sphere: SphereId,
     pub asleep: bool,

@@ -113,8 +113,8 @@ impl JointState {
         Ok(())
     }
 
-    /// If a pin connects a soft body to a rigid body or to the world, moves the anchor that is not on the
-    /// soft body to the other anchor. So nothing jumps at the first step.
+    /// For a pin between a soft body and a rigid body or the world: moves the anchor that is not on the soft
+    /// body to the other anchor. So nothing jumps at the first step.
     fn meet_soft_ends<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
         let is_soft = self.attached.each_ref().map(AttachedAnchor::is_soft);
         for (own, other) in [(0, 1), (1, 0)] {

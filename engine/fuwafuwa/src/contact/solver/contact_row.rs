@@ -22,6 +22,7 @@ pub const AHEAD: f32 = 1.5;
 /// Contact in one substep.
 #[derive(Copy, Clone, Debug)]
 pub struct Contact {
+    /// Unit normal from the second side to the first.
     pub normal: Row,
     /// Distance of the two sides along the normal [m], negative if they overlap.
     pub gap: f32,
@@ -30,8 +31,11 @@ pub struct Contact {
     pub min_normal_velocity: f32,
     /// Effective mass along the normal [kg].
     pub inertia: f32,
+    /// Coulomb friction coefficient.
     pub friction: f32,
+    /// Accumulated impulse along the normal in this substep [N s], at least 0.
     pub normal_impulse: f32,
+    /// Accumulated friction impulse on the first side in this substep [N s].
     pub friction_impulse: Row,
     /// Index of the contact's pair in the list of the broad phase, `NodePairs::list` or `SpherePairs::list`.
     pub pair: u32,

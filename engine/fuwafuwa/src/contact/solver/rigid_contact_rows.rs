@@ -95,7 +95,7 @@ pub fn find_free<D: Dim>(
     hits
 }
 
-/// Returns the distance from a dynamic body within which a contact with a body at rest may become active in
+/// Returns the distance from a rigid body within which a contact with a body at rest may become active in
 /// this substep [m].
 fn margin(rigid: &RigidState, duration: f32) -> f32 {
     CLOSE * rigid.shape().inradius().min(1.0) + margin_of_other(rigid, duration)
