@@ -151,8 +151,8 @@ impl Contacts {
                     }
                 }
                 let inverse_mass = body.inverse_masses()[node] + rigid.yields_near(at.xyz());
-                // A sleeping node acts as a fixed obstacle for a dynamic rigid body. Skips its contacts with
-                // all other rigid bodies.
+                // A sleeping node acts as a fixed obstacle for a dynamic rigid body. Skips the node's contacts
+                // with all other rigid bodies.
                 if body.inverse_masses()[node] == 0.0 && !rigid.is_dynamic() {
                     continue;
                 }

@@ -1,6 +1,6 @@
 //! Fracture: selects the shared nodes that are released next.
 //!
-//! A cut through a breakable node divides the voxels that share it into two sides A and B. The elements of
+//! A cut through a breakable node divides the voxels that share the node into sides A and B. The elements of
 //! side A pull at the node with the force F_A, those of side B with F_B:
 //!
 //! ```text
@@ -109,7 +109,8 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
 
 /// Returns those failures that have no worse failure nearby; `found` is sorted, the worst first. Failures in
 /// one plane do not exclude each other: they form the front of one crack, in 3D a line, which advances as a
-/// whole. If they did, cracks would advance too slowly, and the load would start new ones.
+/// whole. If only the worst of them were released, cracks would advance too slowly, and the load would start
+/// new ones.
 fn without_worse_neighbour(found: Vec<Failure>) -> Vec<Failure> {
     let mut chosen: Vec<Failure> = Vec::new();
     for failure in found {

@@ -36,7 +36,6 @@ pub struct ContactSphere {
     pub asleep: bool,
     /// Bit mask of the bare faces of the voxel. On each axis, bit 2 · axis is the face on the low side, and
     /// bit 2 · axis + 1 the face on the high side.
-    /// and the face on the high side has bit 2 · axis + 1.
     bare: u8,
     /// Voxel of the element.
     voxel: [i16; 3],

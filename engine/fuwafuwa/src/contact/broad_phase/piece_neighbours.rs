@@ -1,5 +1,5 @@
 //! Neighbours: spheres of the same piece that are close at rest. The search for all pairs skips them, because
-//! either the piece itself keeps them apart, or they are on opposite crack faces, which are listed
+//! either elastic forces keep them apart, or they are on opposite crack faces, which are listed
 //! separately. The module also finds ranges in which all spheres sleep.
 
 use super::contact_sphere::{NEAR, SphereId};

@@ -117,7 +117,6 @@ impl SpherePair {
         self.impulse.is_known() || self.met_in_front
     }
 
-    /// Returns both spheres.
     pub fn both<'a>(
         &self,
         spheres: &'a IndexVec<SphereId, ContactSphere>,

@@ -319,8 +319,8 @@ impl SpherePairs {
         (self.paths[sphere].velocity - self.frame).length()
     }
 
-    /// Returns whether a sphere is found through the bins: its path is short and as it was when the bins were
-    /// built.
+    /// Returns whether a sphere is found through the bins: its path is short and has not changed since the bins
+    /// were built.
     #[inline(always)]
     fn is_binned(&self, traveller: &SweptSphere) -> bool {
         self.loose_at[traveller.sphere] == BINNED
@@ -417,8 +417,8 @@ impl SpherePairs {
         })
     }
 
-    /// Searches the pairs of the `changed` spheres again, which are given in ascending order. Pairs of two
-    /// unchanged spheres stay.
+    /// Searches again the pairs of the spheres `changed`, given in ascending order. Pairs of two unchanged
+    /// spheres stay.
     fn find_again<D: Dim>(
         &mut self,
         changed: &[SphereId],

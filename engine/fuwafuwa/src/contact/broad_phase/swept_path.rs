@@ -9,7 +9,8 @@ use crate::soft_body::element_forces::Row;
 pub const SLACK: f32 = 0.35;
 
 /// Weight of a sphere's mean velocity along its last path in the predicted velocity; the present velocity has
-/// weight 1 − `AS_BEFORE`. The mean velocity predicts vibrating spheres better, because they return.
+/// weight 1 − `AS_BEFORE`. The mean velocity predicts vibrating spheres better, because they return to where
+/// they were.
 const AS_BEFORE: f32 = 0.8;
 
 /// Predicted straight path of a sphere, valid until its pairs are searched again.

@@ -15,7 +15,7 @@ id! {
 pub struct NodeContact {
     pub contact: Contact,
     pub node: NodeRow,
-    /// Rigid body, if it can move, and the lever arm from its position to the node [m].
+    /// Rigid body, if it can move, and the lever arm from the body's position to the node [m].
     pub mover: Option<(RigidSlot, Vec3)>,
 }
 
