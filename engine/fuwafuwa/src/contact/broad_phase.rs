@@ -1,4 +1,5 @@
-//! Broad phase: finds pairs that may touch, ahead of time, with a margin for their motion.
+//! Broad phase: finds pairs of objects that may touch soon. A margin covers the motion of the objects until
+//! their pairs are searched again.
 //!
 //! All nodes can touch rigid shapes (`node_pairs`). Soft bodies touch each other through *contact spheres*
 //! (`contact_spheres`). Every surface element is one voxel wide, so a single ball of that width at the centre
@@ -39,14 +40,14 @@ pub use supported_bodies::{
     bounds_of, leaning_on_body, leaning_on_pieces, leaning_on_rigid, sleeping_in,
 };
 
-/// Speed of a touching object above which a sleeper wakes [m/s]: five times the sleep speed threshold. With a
-/// lower value, a heap would keep itself awake. Contact spheres are tested by their mean speed in the last
-/// substep. Their present velocity does not yet include the contacts, so it can exceed this limit in a heap
-/// at rest.
+/// Speed above which a moving object wakes a sleeper that it touches [m/s]: five times the sleep speed
+/// threshold. With a lower value, a heap would keep itself awake. The speed of a contact sphere is the
+/// distance that it moved in the last substep, divided by the substep. Its velocity is not used: the contacts
+/// have not yet corrected it, so it can exceed this limit in a heap at rest.
 pub const WAKE_SPEED: f32 = 0.15;
 
-/// Objects that may touch. A new tick takes only the impulses, the `met_in_front` flags and the order of the
-/// spheres from the last tick, and rebuilds everything else.
+/// Results of the broad phase: objects that may touch. A new tick reuses only the contact impulses, the
+/// `met_in_front` flags and the order of the contact spheres from the last tick. It rebuilds everything else.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Nearby {
@@ -64,7 +65,7 @@ pub struct Nearby {
     /// Remaining time of the tick [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     left: f32,
-    /// Whether embedded spheres were searched in this tick.
+    /// Whether `captives` is up to date: embedded spheres are searched once per tick.
     #[cfg_attr(feature = "serde", serde(skip))]
     knows_captives: bool,
 }
@@ -75,7 +76,7 @@ hash_state! {
 
 impl Nearby {
     /// Starts a tick of `duration` [s]: clears the impulse sums of the last tick. The caller may have changed
-    /// the bodies in any way between the two ticks.
+    /// the bodies in any way since the last tick.
     pub fn start_tick<D: Dim>(&mut self, bodies: &SoftBodies<D>, duration: f32) {
         self.nodes.start_tick();
         self.rigids.start_tick();
@@ -88,7 +89,8 @@ impl Nearby {
         (self.left, self.knows_captives) = (duration, false);
     }
 
-    /// Updates nodes, contact spheres and embedded spheres after a tear of a body.
+    /// Updates the lists after a tear of a body. `changes` holds the nodes and elements that the tear added,
+    /// removed or altered.
     pub fn tear<D: Dim>(&mut self, slot: BodySlot, body: &SoftBody<D>, changes: &Changes) {
         self.nodes.tear(slot, &changes.nodes);
         let changed = &mut self.pairs.changed;
@@ -96,7 +98,7 @@ impl Nearby {
         self.captives.tear(&self.spheres);
     }
 
-    /// Removes a soft body from all lists; its slot may be reused.
+    /// Removes a soft body from all lists, so that another body may take its slot.
     pub fn remove_body(&mut self, slot: BodySlot) {
         let is_of_it = |&sphere: &SphereId| self.spheres.body_of(sphere) == slot;
         self.pairs
@@ -106,7 +108,8 @@ impl Nearby {
         self.spheres.remove_body(slot);
     }
 
-    /// Removes `elements` of a body, given in ascending order, and their nodes from all lists.
+    /// Removes from all lists the `elements` of a body, given in ascending order, and the nodes that the mesh
+    /// no longer has.
     pub fn remove_elements<D: Dim>(
         &mut self,
         slot: BodySlot,
@@ -122,8 +125,8 @@ impl Nearby {
         nodes.retain(|pair| pair.body != slot || is_there(pair.node));
     }
 
-    /// After a world was read from a file, discards pairs of objects that do not exist. Other data needs no
-    /// check, because a new tick rebuilds it.
+    /// Discards pairs of objects that do not exist. Required after a world was read from a file, which may
+    /// contain any numbers. Only the pairs need this check, because a new tick rebuilds everything else.
     #[cfg(feature = "serde")]
     pub fn keep_known<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
         self.nodes.keep_known(bodies, rigids);
@@ -147,22 +150,22 @@ impl Nearby {
         self.rigids.remove(slot);
     }
 
-    /// Marks the nodes and contact spheres of woken pieces for a new search. `pieces` holds body and piece
-    /// number, ascending.
+    /// Marks the nodes and contact spheres of woken pieces, so that their pairs are searched again. `pieces`
+    /// holds body slots and piece numbers in ascending order.
     pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &SoftBodies<D>) {
         self.nodes.wake(pieces, bodies);
         self.spheres.wake(pieces, &mut self.pairs.changed);
     }
 
-    /// Reduces the remaining time and the margins by a substep of `duration` [s] in which no node moved
-    /// farther than `distance` [m].
+    /// Subtracts a substep of `duration` [s] from the remaining time of the tick, and the motion in that
+    /// substep from the search margins. No node moved farther than `distance` [m] in the substep.
     pub fn pass(&mut self, duration: f32, distance: f32) {
         self.left -= duration;
         self.nodes.pass(distance);
         self.pairs.pass(duration, distance);
     }
 
-    /// Updates the lists to the present positions; a substep takes `duration` [s].
+    /// Updates all lists to the present positions, for a substep of `duration` [s].
     pub fn follow<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies, duration: f32) {
         self.nodes.follow(bodies, rigids, duration, self.left);
         let changed = self.pairs.follow(&mut self.spheres, bodies);
@@ -179,8 +182,8 @@ impl Nearby {
         self.spheres.take_velocities(bodies);
     }
 
-    /// Iterates over the pieces with a contact that has a normal impulse, as body and piece number, possibly
-    /// repeated.
+    /// Iterates over the pieces on which a contact presses, that is, with a normal impulse above 0. Each item
+    /// is a body slot and a piece number. A piece may occur several times.
     pub fn pressed<D: Dim>(
         &self,
         bodies: &SoftBodies<D>,

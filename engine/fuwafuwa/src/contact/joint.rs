@@ -94,28 +94,29 @@ impl<D: Dim> Joint<D> {
     }
 }
 
-/// Attachment point of a joint. Positions are world-space positions at the time when the joint is added.
+/// Attachment point of a joint, on a body or in the world.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub enum JointAnchor<D: Dim> {
     /// Point of the world [m].
     Point(D::Vector),
-    /// Point of a rigid body, on its surface or elsewhere.
+    /// Point of a rigid body. It need not be on the surface or inside of the body.
     RigidBody {
         /// Handle of the rigid body.
         body: RigidBodyHandle,
-        /// Position [m].
+        /// World-space position at the time when the joint is added [m].
         point: D::Vector,
     },
-    /// Mean of some nodes of a soft body.
+    /// Mean position of the nodes near a point of a soft body.
     SoftBody {
         /// Handle of the soft body.
         body: SoftBodyHandle,
-        /// Position [m].
+        /// World-space position at the time when the joint is added [m].
         point: D::Vector,
-        /// Radius within which nodes are attached [m], default 0. If it contains no node, the nearest node is
-        /// attached. More nodes share the load, so that the body tears less easily.
+        /// Radius around `point` within which nodes are attached [m], default 0. If there is no node within
+        /// the radius, the nearest node is attached. More nodes share the load, so that the body tears less
+        /// easily.
         radius: f32,
     },
 }
@@ -133,8 +134,8 @@ impl<D: Dim> JointAnchor<D> {
         }
     }
 
-    /// Returns the anchor with all nodes of its soft body within a radius [m]. Anchors that are not on a soft
-    /// body stay as they are.
+    /// Returns the anchor with all nodes of its soft body within a radius [m]. Returns anchors that are not
+    /// on a soft body unchanged.
     #[must_use]
     pub fn within(self, radius: f32) -> Self {
         match self {
@@ -152,9 +153,9 @@ impl<D: Dim> JointAnchor<D> {
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointKind {
-    /// Pin: keeps the anchors together and lets them rotate. If one anchor is on a soft body and the other is
-    /// not, the other anchor moves to the soft body's anchor when the joint is added. So nothing jumps. In
-    /// all other cases, anchors that are apart are drawn together.
+    /// Pin: keeps the anchors together and lets the bodies rotate. If only one anchor is on a soft body, the
+    /// other anchor moves to it when the joint is added, so that nothing jumps. In all other cases, anchors
+    /// that are apart are drawn together.
     Pin,
     /// Spring with a rest length.
     Spring {
@@ -165,7 +166,7 @@ pub enum JointKind {
         /// Rest length [m], 0 to 1e6.
         length: f32,
     },
-    /// Rope: limits the distance of the anchors.
+    /// Rope: limits the distance between the anchors.
     Rope {
         /// Maximum distance [m], positive, at most 1e6.
         length: f32,

@@ -28,18 +28,19 @@ use rigid_contact_rows::{find_free, find_hands};
 use solver_velocities::Motion;
 use std::collections::BTreeSet;
 
-/// Cosine above which a crumb is behind a contact sphere of a surface: cosine of the angle between the inward
-/// normal and the direction from the sphere to the crumb. A smaller limit would include crumbs that lie on
-/// the body. A crumb in the hollow between four spheres, beside a corner of a 3D body, has a cosine of 0.17.
-/// If the crumb is pressed in by a sixth of a voxel, its cosine is 0.3.
+/// Cosine above which a crumb counts as behind a contact sphere of a surface. It is the cosine of the angle
+/// between the inward normal and the direction from the contact sphere to the crumb. A smaller limit would
+/// include crumbs that lie on the surface: a crumb in the hollow between four spheres, beside a corner of a
+/// 3D body, has a cosine of 0.17. If it is pressed in by a sixth of a voxel, its cosine is 0.3.
 const BEHIND: f32 = 0.3;
-/// Minimum length of a sphere's outward vector, as a share of the sphere's radius. The direction of a shorter
-/// vector is not used. At an undeformed flat face the vector is as long as the radius, so the limit excludes
-/// elements pressed to a fifth of their height.
+/// Minimum length of a contact sphere's outward vector, as a share of the sphere's radius. If the vector is
+/// shorter, no crumb counts as behind the sphere, because the direction is unreliable. At an undeformed flat
+/// face the vector is as long as the radius, so the limit excludes elements pressed to a fifth of their
+/// height.
 const SHORTEST_WAY_OUT: f32 = 0.2;
-/// Gap between a node and a rigid body below which a sleeper wakes [voxels].
+/// Gap between a node and a rigid body below which one can wake the other [voxels].
 const WAKING_NODE: f32 = 2.0 * CLOSE;
-/// Gap between two contact spheres below which a sleeper wakes, as a share of the sum of the radii.
+/// Gap between two contact spheres below which one can wake the other, as a share of the sum of their radii.
 const WAKING_SPHERE: f32 = CLOSE;
 
 /// Contacts of one substep.
@@ -64,7 +65,8 @@ pub struct Hits {
 }
 
 impl Contacts {
-    /// Finds the contacts of this substep among the nearby pairs. Returns the sleepers that were hit.
+    /// Selects the contacts of this substep from the pairs of the broad phase. Returns the sleepers that must
+    /// wake.
     pub fn find<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
@@ -129,7 +131,8 @@ impl Contacts {
                 let approach = inner::<D>(relative, normal);
                 if !is_close(gap, approach, size, duration) {
                     pair.impulse.release();
-                    // Subtracts slightly more than the gap of an active contact, to allow for rounding.
+                    // A contact becomes active below a gap of `CLOSE` voxels. The factor 1.1 allows for
+                    // rounding.
                     pair.clear = travel + gap - 1.1 * CLOSE * size;
                     continue;
                 }
@@ -148,8 +151,8 @@ impl Contacts {
                     }
                 }
                 let inverse_mass = body.inverse_masses()[node] + rigid.yields_near(at.xyz());
-                // A sleeping node acts as a fixed obstacle for a dynamic rigid body. Skips its contacts with
-                // all other rigid bodies.
+                // A sleeping node acts as a fixed obstacle for a dynamic rigid body. Skips the node's contacts
+                // with all other rigid bodies.
                 if body.inverse_masses()[node] == 0.0 && !rigid.is_dynamic() {
                     continue;
                 }
@@ -279,7 +282,7 @@ impl Contacts {
         handled.map(|row| row.both[0]).collect()
     }
 
-    /// Solves the contacts on the velocities.
+    /// Solves the contacts: applies their impulses to the velocities of nodes and rigid bodies.
     pub fn solve<D: Dim>(
         &mut self,
         bodies: &mut SoftBodies<D>,
@@ -348,7 +351,7 @@ impl Contacts {
             .renew(self.free.iter().map(FreeContact::touch));
     }
 
-    /// Removes, after the position update, the velocity that resolved overlaps.
+    /// Removes the velocity by which overlaps were resolved. Follows the position update.
     pub fn relax<D: Dim>(
         &mut self,
         bodies: &mut SoftBodies<D>,
@@ -386,7 +389,7 @@ impl Contacts {
 }
 
 impl Hits {
-    /// Adds hits; keeps both lists sorted and without duplicates.
+    /// Adds sleepers that were hit; keeps both lists sorted and without duplicates.
     pub fn add(&mut self, pieces: Vec<Hit>, rigids: Vec<RigidSlot>) {
         if !pieces.is_empty() || !rigids.is_empty() {
             self.pieces.extend(pieces);
@@ -403,10 +406,10 @@ impl Hits {
     }
 }
 
-/// If one sphere is a crumb behind the surface sphere of the other, returns a unit normal and a distance;
-/// otherwise `None`. The normal points out of the surface, or into it if the crumb is the second sphere, so
-/// that it always pushes the first sphere. The distance of the crumb along the outward normal is negative
-/// [m].
+/// Returns a contact normal and a distance if one sphere is a crumb behind the other sphere, which belongs to
+/// a surface; otherwise `None`. The unit normal gives the direction in which the first sphere is pushed: out
+/// of the surface if the first sphere is the crumb, into the surface if the second one is. The distance is
+/// that of the crumb from the surface sphere along the outward normal [m]; it is negative.
 fn behind_surface<D: Dim>(
     bodies: &SoftBodies<D>,
     [a, b]: [&ContactSphere; 2],

@@ -1,5 +1,5 @@
-//! Generational arenas and their handles. An item keeps its slot while others are removed, and a handle to a
-//! removed item is detected as stale.
+//! Generational arenas and their handles. An item keeps its slot while other items are removed, and a handle
+//! to a removed item is detected as stale.
 
 use crate::error::Error;
 use crate::foundation::hash::{HashState, hash_state};
@@ -66,7 +66,7 @@ macro_rules! handle {
 }
 
 id! {
-    /// Slot of a body in a world; reused after the body is removed.
+    /// Slot of a soft body in a world; reused after the soft body is removed.
     #[doc(hidden)]
     pub BodySlot
 }
@@ -129,13 +129,13 @@ pub struct Arena<K: Handle, T> {
     /// Number of mutable accesses, see [`Arena::revision`].
     #[cfg_attr(feature = "serde", serde(skip))]
     revision: u64,
-    /// Indices of the free slots. Not stored: loading recomputes them from `slots`, so that a loaded arena
-    /// assigns the same slots as the original.
+    /// Indices of the free slots. Not stored in files: loading recomputes them from `slots`, so that a loaded
+    /// arena assigns the same slots as the original.
     #[cfg_attr(feature = "serde", serde(skip))]
     free: BTreeSet<usize>,
 }
 
-/// Stored form of an [`Arena`].
+/// Form of an [`Arena`] in files.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(bound = "T: for<'b> serde::Deserialize<'b>")]
@@ -157,7 +157,8 @@ impl<K: Handle, T> From<StoredArena<K, T>> for Arena<K, T> {
     }
 }
 
-/// Slot of an [`Arena`]: its present item, and its generation, the number of items that were removed from it.
+/// Slot of an [`Arena`]: its present item, and its generation, which is the number of items removed from the
+/// slot so far.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Slot<T> {

@@ -1,8 +1,9 @@
 //! Everything that differs between two and three dimensions.
 //!
-//! Inside the engine, arithmetic is the same in both: a [`Point`] of the lattice and a [`Vec3`] always have
-//! three coordinates, and the third one is 0 in 2D. A dimension adds the number of axes ([`Dim::N`]), the
-//! constants that follow from it, and the vectors of the public interface ([`Dim::Vector`]).
+//! Inside the engine, most code is written once for 2D and 3D: a [`Point`] of the lattice and a [`Vec3`]
+//! always have three coordinates, and the third one is 0 in 2D. A dimension adds the number of axes
+//! ([`Dim::N`]), the constants that follow from it, and the vectors of the public interface
+//! ([`Dim::Vector`]).
 
 use crate::foundation::hash::HashState;
 use crate::math::row::Row;
@@ -30,11 +31,11 @@ pub trait Dim:
     const SLOTS: usize = 3usize.pow(Self::N as u32);
     /// Mask with a bit for every corner.
     const ALL_CORNERS: u8 = ((1u16 << Self::CORNERS) - 1) as u8;
-    /// Stiffness of the hourglass modes of a whole cell relative to Young's modulus: 1/3 in the plane, 1/6 in
-    /// space. With these values, a beam one element thick bends exactly.
+    /// Stiffness of the hourglass modes of a cell with all its children, relative to Young's modulus: 1/3 in
+    /// 2D, 1/6 in 3D. With these values, a beam one element thick has the bending stiffness of beam theory.
     const HOURGLASS: f64;
 
-    /// Returns the number of voxel layers along the third axis of a grid: 1 in 2D, `voxels` in 3D.
+    /// Returns the number of voxels along the third axis of a grid: 1 in 2D, `voxels` in 3D.
     fn depth(voxels: usize) -> usize {
         match Self::N {
             2 => 1,
@@ -51,7 +52,7 @@ pub struct Dim2;
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dim3;
 
-/// Other crates cannot name this trait, so they cannot implement [`Dim`].
+/// Holds `Sealed`, a supertrait of [`Dim`]. Other crates cannot name it, so they cannot implement [`Dim`].
 mod sealed {
     pub trait Sealed {}
     impl Sealed for super::Dim2 {}
@@ -189,10 +190,11 @@ pub trait DimAngular:
     + Mul<f32, Output = Self>
     + Neg<Output = Self>
 {
-    /// Returns the components about all three axes; in 2D only the third one is not 0.
+    /// Returns the components about all three axes. In 2D the number becomes the third component, and the
+    /// other two are 0.
     fn to_vec3(self) -> Vec3;
 
-    /// Returns the components of the dimension; in 2D the third one.
+    /// Returns the vector in 3D, and its third component in 2D.
     fn from_vec3(vector: Vec3) -> Self;
 }
 
@@ -246,7 +248,7 @@ pub fn corner(index: usize) -> Point {
     ]
 }
 
-/// Masks of the corners on the far side of each axis.
+/// For each axis, mask of the corners with coordinate 1 on that axis, see [`corner`].
 pub const FAR: [u8; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
 
 /// Coordinate-wise sum.
@@ -271,7 +273,8 @@ pub(crate) fn inner<D: Dim>(a: Row, b: Row) -> f32 {
     sum
 }
 
-/// Restricts an angular velocity or torque to the dimension: in 2D only the third component remains.
+/// Returns an angular velocity or torque without the components that do not exist in the dimension: in 2D
+/// only the third component remains.
 pub(crate) fn turning<D: Dim>(mut about: Vec3) -> Vec3 {
     if D::N == 2 {
         (about.x, about.y) = (0.0, 0.0);
@@ -279,7 +282,8 @@ pub(crate) fn turning<D: Dim>(mut about: Vec3) -> Vec3 {
     about
 }
 
-/// Returns the voxel in the octant number `octant` around the lattice point `at`.
+/// Returns the voxel in octant `octant` around the lattice point `at`. Bit k of `octant` is 1 if the voxel is
+/// on the high side of the point along axis k.
 #[inline]
 pub fn voxel_around<D: Dim>(at: Point, octant: usize) -> Point {
     let mut voxel = at;
@@ -289,7 +293,7 @@ pub fn voxel_around<D: Dim>(at: Point, octant: usize) -> Point {
     voxel
 }
 
-/// Returns all points of the box `low..=high`, the first axis fastest.
+/// Returns all points of the box `low..=high`; the first coordinate varies fastest.
 pub fn points_in(low: Point, high: Point) -> impl Iterator<Item = Point> {
     let mut next = (0..3).all(|axis| low[axis] <= high[axis]).then_some(low);
     std::iter::from_fn(move || {
@@ -314,17 +318,17 @@ pub fn neighbourhood<D: Dim>(at: Point, reach: i32) -> impl Iterator<Item = Poin
     points_in(low, high)
 }
 
-/// Returns the corners of a cell's face, with `face` = 2 · axis + side, counterclockwise as seen from
-/// outside. A face in 2D has two corners, and the last two entries are unused. On the way from the first
-/// corner to the second, the cell lies to the left.
+/// Returns the corners of face number 2 · axis + side of a cell, counterclockwise as seen from outside; see
+/// [`corner`] for their numbers. In 2D a face has two corners, and the last two entries are unused. As seen
+/// from the first corner, looking to the second, the cell lies to the left.
 pub fn face_corners<D: Dim>(face: usize) -> [usize; 4] {
     let (axis, side) = (face / 2, face % 2);
     let ring: &[usize] = match D::N {
         2 => &[0, 1],
         _ => &[0, 1, 3, 2],
     };
-    // The other axes. In 3D they are ordered so that `ring` runs counterclockwise around the direction of
-    // `axis`.
+    // The two axes other than `axis`. In 3D they are ordered so that `ring` runs counterclockwise around the
+    // direction of `axis`.
     let others = match D::N {
         2 => [1 - axis, 2],
         _ => [(axis + 1) % 3, (axis + 2) % 3],

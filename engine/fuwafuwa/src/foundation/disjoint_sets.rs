@@ -1,4 +1,4 @@
-//! Union-find: disjoint sets that are only ever merged.
+//! Union-find: disjoint sets that can be merged but not split.
 
 /// Disjoint sets of the numbers 0, 1, 2, …
 #[derive(Clone, Debug, Default)]
@@ -25,8 +25,8 @@ impl DisjointSets {
         self.lower.len() - 1
     }
 
-    /// Returns the lowest number of the set that contains `number`. It identifies the set: the result is
-    /// equal for all numbers of a set.
+    /// Returns the lowest number of the set that contains `number`. The result identifies the set, because it
+    /// is equal for all numbers of a set.
     pub fn lowest(&mut self, mut number: usize) -> usize {
         while self.lower[number] != number {
             self.lower[number] = self.lower[self.lower[number]];
@@ -35,8 +35,8 @@ impl DisjointSets {
         number
     }
 
-    /// Groups `things` by set, where `things[n]` belongs to the number n. Sets are ordered by their lowest
-    /// numbers, and things within a set by their numbers.
+    /// Groups `things` by set, where `things[n]` belongs to the number n. The groups are ordered by the
+    /// lowest number of their set, and the things within a group by their numbers.
     pub fn sort<T: Copy>(&mut self, things: &[T]) -> Vec<Vec<T>> {
         let mut sets: Vec<Vec<T>> = Vec::new();
         let mut set_of = vec![0; self.count()];

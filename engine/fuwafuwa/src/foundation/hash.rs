@@ -4,8 +4,8 @@ use crate::math::row::Row;
 use glam::{DVec3, Vec2, Vec3};
 use std::collections::BTreeMap;
 
-/// Incremental hash [FNV-1a]. Accepts bytes, for which FNV-1a is defined, or 64-bit words, which is faster
-/// and equally sensitive to changes.
+/// Incremental hash [FNV-1a] of bytes or of 64-bit words. FNV-1a is defined for bytes; words are faster and
+/// equally sensitive to changes.
 #[derive(Copy, Clone, Debug)]
 pub struct Hash(u64);
 
@@ -24,7 +24,7 @@ impl Hash {
         hash.number()
     }
 
-    /// Adds a byte or word.
+    /// Adds one byte or one 64-bit word.
     #[inline]
     pub const fn add(&mut self, number: u64) {
         self.0 = (self.0 ^ number).wrapping_mul(0x0100_0000_01b3);
@@ -36,15 +36,15 @@ impl Hash {
     }
 }
 
-/// State that the hash of a world covers: exactly what snapshots contain.
+/// State of an object that the hash of a world covers: exactly the fields that snapshots contain.
 pub trait HashState {
     /// Adds the state to a hash.
     fn hash_state(&self, hash: &mut Hash);
 }
 
 /// Implements [`HashState`] for a struct or an enum from the list of its fields or variants. A missing field
-/// or variant is a compile error. Fields under `skip` are not stored in snapshots: they follow from the state
-/// or are rebuilt in each tick.
+/// or variant is a compile error. Fields under `skip` are not hashed: they follow from the other fields or
+/// are rebuilt in each tick, so snapshots do not contain them.
 macro_rules! hash_state {
     (
         $([$($generics:tt)*])? struct $type:ty { $($field:ident),* $(,)? }

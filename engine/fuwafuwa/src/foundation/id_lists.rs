@@ -1,8 +1,8 @@
 //! Linked lists of ids, one per table index: for example the elements of each cell, or the nodes at each
 //! lattice point.
 //!
-//! Each index stores the first id of its list, and each id stores the next one. So lists need no allocation
-//! of their own and no search.
+//! A list is stored as its first id and, for each id, the id after it. So lists need no allocation of their
+//! own, and the list of an index is found without a search.
 
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::Id;
@@ -14,9 +14,9 @@ const END: u32 = u32::MAX;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdLists<I> {
-    /// First id of each list.
+    /// First id of each list; `END` for an empty list.
     first: Vec<u32>,
-    /// Next id after each id.
+    /// For each id, the id after it in its list; `END` for the last one.
     next: Vec<u32>,
     ids: PhantomData<I>,
 }
@@ -24,7 +24,7 @@ pub struct IdLists<I> {
 hash_state! { [I] struct IdLists<I> { first, next } skip { ids } }
 
 impl<I: Id> IdLists<I> {
-    /// Creates `places` empty lists.
+    /// Creates `places` empty lists, for the indices below `places`.
     pub fn new(places: usize) -> Self {
         Self {
             first: vec![END; places],
@@ -80,7 +80,7 @@ impl<I: Id> IdLists<I> {
         self.first.len() == places && self.first.iter().all(&mut ends)
     }
 
-    /// Returns the entry of `first` or `next` that holds `id`, in the list at index `place`.
+    /// Returns the entry of `first` or `next` that equals `id`, in the list at index `place`.
     fn link(&mut self, place: usize, id: u32) -> &mut u32 {
         let (mut before, mut here) = (END, self.first[place]);
         while here != id {
@@ -95,8 +95,8 @@ impl<I: Id> IdLists<I> {
 }
 
 /// Returns ids below `bound` in ascending order, without duplicates. Uses a bit set over all ids, and scans
-/// only the range between the lowest and the highest id. After a release this is cheaper than sorting,
-/// because most ids occur several times and are close together.
+/// only the range between the lowest and the highest id. After a release this is faster than sorting, because
+/// most ids occur several times and lie close together.
 pub fn ascending<I: Id>(ids: impl Iterator<Item = I>, bound: usize) -> Vec<I> {
     let mut words = vec![0u64; bound.div_ceil(64)];
     let (mut first, mut end, mut count) = (words.len(), 0, 0);

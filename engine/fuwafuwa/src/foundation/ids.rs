@@ -7,7 +7,7 @@ use crate::foundation::hash::{HashState, hash_state};
 use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut, Index, IndexMut};
 
-/// Index of one kind of object.
+/// Typed id: an index into tables, with a type for each kind of object.
 pub trait Id: Copy {
     /// Creates the id for an index of a table.
     fn of(index: usize) -> Self;
@@ -63,15 +63,15 @@ macro_rules! id {
 pub(crate) use id;
 
 id! {
-    /// Id of a node of a body.
+    /// Id of a node of a soft body.
     pub NodeId
 }
 id! {
-    /// Id of an element of a body.
+    /// Id of an element of a soft body.
     pub ElementId
 }
 id! {
-    /// Id of a piece of a body.
+    /// Id of a piece of a soft body.
     pub PieceId
 }
 

@@ -8,13 +8,14 @@ use crate::foundation::ids::NodeId;
 /// tests use small bodies, and should still cover several chunks.
 pub const CHUNK_SIZE: usize = if cfg!(test) { 32 } else { 2048 };
 
-/// Smallest number of chunks that are processed on several threads. If other programs use the machine, each
-/// synchronisation of threads can take as long as a tick, and small bodies gain nothing. A ball with a
-/// diameter of 40 voxels has enough nodes for this many chunks.
+/// Smallest number of chunks that are processed on several threads; fewer chunks are processed on one. If
+/// other programs use the machine, each synchronisation of threads can take as long as a tick, so threads do
+/// not help small bodies. A ball with a diameter of 40 voxels has enough nodes for this many chunks.
 #[cfg(feature = "parallel")]
 const MIN_PARALLEL_CHUNKS: usize = if cfg!(test) { 2 } else { 8 };
 
-/// Processes each chunk; returns the results in order.
+/// Calls `work` for each of `shares`, on several threads if there are many shares. Returns the results in the
+/// order of `shares`.
 pub fn map<T: Send, R: Send>(
     shares: impl Iterator<Item = T>,
     work: impl Fn(T) -> R + Sync,
@@ -37,17 +38,18 @@ pub fn chunks<T>(list: &mut [T]) -> impl Iterator<Item = (usize, &mut [T])> {
     firsts.zip(list.chunks_mut(CHUNK_SIZE))
 }
 
-/// Chunk of nodes, with the rows of these nodes in `N` lists that are indexed by node id.
+/// Chunk of nodes, with the corresponding parts of `N` lists that hold one row for each node id.
 pub struct RowChunk<'a, T, const N: usize> {
     /// Nodes, ascending.
     pub nodes: &'a [NodeId],
-    /// Node id of the first row in each of `lists`.
+    /// Node id of the first row in each list.
     pub first: usize,
-    /// Rows of each list, for all node ids from `first` to the last node of the chunk.
+    /// Part of each list: the rows of all node ids from `first` to the last node of the chunk.
     pub lists: [&'a mut [T]; N],
 }
 
-/// Splits nodes with ascending ids into chunks, and splits `lists`, indexed by node id, accordingly.
+/// Splits nodes with ascending ids into chunks. Gives each chunk the parts of `lists` that belong to its
+/// nodes; the lists hold one row for each node id.
 pub fn rows<'a, T, const N: usize>(
     nodes: &'a [NodeId],
     mut lists: [&'a mut [T]; N],

@@ -1,7 +1,7 @@
 //! Cuts: along a segment in 2D, along a parallelogram in 3D.
 //!
 //! A blade separates two neighbouring voxels if the line between their present centres crosses the blade. The
-//! shared nodes are then released, as they are when a body tears.
+//! nodes that the voxels share are then released, as in a tear.
 
 use crate::foundation::dim::{Dim, Dim2, Dim3, DimVector, Point, voxel_around};
 use crate::foundation::ids::PieceId;
@@ -13,14 +13,14 @@ use glam::{Vec2, Vec3};
 use std::collections::BTreeSet;
 use std::marker::PhantomData;
 
-/// Cutting segment in 2D, or cutting parallelogram in 3D.
+/// Area that is cut at once: a segment in 2D, a parallelogram in 3D.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Blade<D: Dim> {
-    /// Corner [m].
+    /// Corner of the area [m]; in 2D the beginning of the segment, with the third coordinate −0.5.
     corner: Vec3,
-    /// First edge from the corner [m].
+    /// Edge of the area, as a vector from `corner` [m]; in 2D the segment.
     across: Vec3,
-    /// Second edge from the corner [m]; in 2D the unit vector of the third axis.
+    /// Second edge of the area, as a vector from `corner` [m]; in 2D the unit vector of the third axis.
     along: Vec3,
     dim: PhantomData<D>,
 }
@@ -38,7 +38,7 @@ impl Blade<Dim2> {
 }
 
 impl Blade<Dim3> {
-    /// Returns a blade with a corner [m] and the edges [m] that begin there.
+    /// Returns a parallelogram with a corner [m] and the two edge vectors [m] that begin there.
     pub fn parallelogram(corner: Vec3, first: Vec3, second: Vec3) -> Self {
         Self {
             corner,
@@ -50,7 +50,7 @@ impl Blade<Dim3> {
 }
 
 impl<D: Dim> Blade<D> {
-    /// Returns whether the line between two points crosses the blade.
+    /// Returns whether the line segment between two points [m] crosses the blade.
     fn parts(&self, a: Vec3, b: Vec3) -> bool {
         let normal = self.across.cross(self.along);
         let (over, under) = (normal.dot(a - self.corner), normal.dot(b - self.corner));
@@ -76,7 +76,7 @@ pub struct CutReport<D: Dim> {
 }
 
 impl<D: Dim> SoftBody<D> {
-    /// Cuts along a blade. A body with coarse grading stays whole.
+    /// Cuts the body along a blade. Does nothing to a body with `Grading::Coarse`.
     #[inline(never)]
     pub fn cut(&mut self, blade: &Blade<D>) -> CutReport<D> {
         if self.grading() == Grading::Coarse {
@@ -89,8 +89,8 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Opens faces between voxels, each given by the voxel on its low side and its axis. Returns the
-    /// positions of the released nodes [m], and the changes of the body.
+    /// Opens faces between voxels, each given by the voxel on its low side and its axis, and releases the
+    /// nodes there. Returns the positions of the released nodes [m], and the changes of the body's topology.
     pub(crate) fn open(&mut self, opened: &BTreeSet<(Point, usize)>) -> (Vec<Vec3>, Changes) {
         let mut points: BTreeSet<Point> = BTreeSet::new();
         for &(voxel, axis) in opened {
@@ -115,7 +115,8 @@ impl<D: Dim> SoftBody<D> {
         self.release(&everything)
     }
 
-    /// Returns the faces that a blade crosses, each given by the voxel on its low side and its axis.
+    /// Returns the closed or open faces between voxels that a blade crosses, each given by the voxel on its
+    /// low side and its axis.
     fn faces_across(&self, blade: &Blade<D>) -> BTreeSet<(Point, usize)> {
         let mut middles = vec![None; self.grid().voxels().count()];
         for (_, element) in self.mesh().elements() {
@@ -146,7 +147,8 @@ impl<D: Dim> SoftBody<D> {
         crossed
     }
 
-    /// Returns the present position of a lattice point [m], interpolated in one of the elements around it.
+    /// Returns the present position of a lattice point [m], interpolated in one of the elements around the
+    /// point.
     fn position_of(&self, at: Point) -> Option<Vec3> {
         let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
         let owner = { voxels }.find_map(|voxel| self.mesh().owner(voxel))?;
@@ -155,8 +157,8 @@ impl<D: Dim> SoftBody<D> {
         ))
     }
 
-    /// Returns the releases at a lattice point that open the given faces, as masks of octants: one mask for
-    /// each side that separates. Returns none if the faces are open already.
+    /// Returns the releases at a lattice point that open the faces `opened` there. Each release is a mask of
+    /// octants that is separated from the other octants. The result is empty if the faces are open already.
     fn sides(&self, at: Point, opened: &BTreeSet<(Point, usize)>) -> Vec<u8> {
         let around = self.connectivity().around(at);
         let mut groups = around.middle();
@@ -182,7 +184,7 @@ impl<D: Dim> SoftBody<D> {
     }
 }
 
-/// Returns a lattice point: corner number `corner`, from 0, of the face on the high side of a voxel along
+/// Returns the lattice point at corner number `corner`, from 0, of the face on the high side of a voxel along
 /// `axis`.
 fn corner_of_face<D: Dim>(voxel: Point, axis: usize, corner: usize) -> Point {
     let mut at = voxel;

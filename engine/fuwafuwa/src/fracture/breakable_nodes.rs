@@ -1,8 +1,7 @@
 //! Nodes at which a crack can start or continue, and the possible cuts there.
 //!
-//! A crack can start or continue at a *breakable node*: one that several voxels share where connectivity is
-//! incomplete. The voxels are connected there by closed faces. A *cut* opens some of the faces across one
-//! axis, so that the voxels are divided into two sides.
+//! A *breakable node* is shared by several voxels at an open point. Closed faces connect these voxels. A
+//! *cut* opens some of the closed faces across one axis, so that the voxels are divided into two sides.
 //!
 //! ```text
 //!       A │ B      a cut opens the faces across x: side A and side B
@@ -19,8 +18,8 @@ use crate::topology::mesh::{Mesh, Node};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Largest random increase of the strength of a smooth surface, relative to that strength. The scatter
-/// prevents a row of equally loaded nodes from failing all at once. A crack tip is a single node and needs no
+/// Largest random increase of the strength at a smooth surface, relative to the strength. Without this
+/// scatter, a row of equally loaded nodes would fail all at once. A crack tip is a single node and needs no
 /// scatter.
 const SCATTER: f32 = 0.4;
 
@@ -29,24 +28,24 @@ const SCATTER: f32 = 0.4;
 pub struct BreakableNode {
     /// Mask of the octants that share the node.
     pub group: u8,
-    /// Mask of octants: each has a voxel that would become a crumb, or hang by one face, if it alone were
-    /// separated from the node.
+    /// Mask of the octants whose voxel, if a cut separated it alone from the node, would become a crumb or
+    /// stay attached by a single face.
     pub crumbs: u8,
-    /// Number of the weakest material around the node.
+    /// Number of the weakest material around the node; 1 is the first material of the body.
     pub material: u8,
-    /// Tension that the node withstands [Pa].
+    /// Tension at which the node begins to take damage [Pa].
     pub threshold: f32,
-    /// Index of the node's list of cuts in [`BreakableNodes`].
+    /// Index of the node's list of cuts in the list of all patterns of closed faces.
     cuts: u32,
 }
 
-/// Division of the voxels at a point into two sides by opening faces across `axis`.
+/// Division of the voxels that share a node into two sides, by opening faces across `axis`.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct NodeCut {
-    /// Axis across the opened faces.
+    /// Axis normal to the opened faces.
     pub axis: u8,
-    /// Mask of the octants on the far side of the opened faces: the voxels that the cut separates from the
-    /// others.
+    /// Mask of the octants on the far side of the opened faces. The cut separates their voxels from those of
+    /// all other octants.
     pub side: u8,
     /// Number of opened faces.
     pub faces: u8,
@@ -54,14 +53,14 @@ pub struct NodeCut {
     pub single_voxel_octants: u8,
 }
 
-/// For each axis, mask of the octants on the near side of a closed face across that axis.
+/// For each axis, mask of the octants on the near side of a closed face normal to that axis.
 type Closed = [u8; 3];
 
 /// Breakable nodes of a body.
 #[derive(Clone, Debug, Default)]
 pub struct BreakableNodes {
     of_node: IndexVec<NodeId, Option<BreakableNode>>,
-    /// Cuts of each pattern of closed faces, in the order in which the patterns first occurred.
+    /// Possible cuts for each pattern of closed faces that occurred so far.
     cuts: Vec<Vec<NodeCut>>,
     known: BTreeMap<Closed, u32>,
 }
@@ -80,7 +79,8 @@ impl BreakableNodes {
         &self.cuts[node.cuts as usize]
     }
 
-    /// Updates `nodes`, which must contain all nodes whose elements or connectivity may have changed.
+    /// Recomputes which of `nodes` are breakable, and their cuts. `nodes` must contain all nodes whose
+    /// elements or connectivity may have changed.
     pub fn update<D: Dim>(
         &mut self,
         nodes: &[NodeId],
@@ -112,7 +112,7 @@ impl BreakableNodes {
         materials: &[Material],
     ) -> BreakableNode {
         let Node { at, group } = node;
-        // Faces between voxels of the group, and the closed ones among them.
+        // All faces between voxels of the group; below, the closed ones among them.
         let faces: Closed = [0, 1, 2].map(|axis| group & group >> (1 << axis) & !FAR[axis]);
         let mut closed = around.closed_faces();
         closed
@@ -150,7 +150,7 @@ impl BreakableNodes {
         }
     }
 
-    /// Returns the index of the list of cuts for a pattern of closed faces in a group.
+    /// Returns the index in `cuts` of the possible cuts for a pattern of closed faces in a group.
     fn pattern<D: Dim>(&mut self, closed: Closed, group: u8) -> u32 {
         let all = &mut self.cuts;
         *self.known.entry(closed).or_insert_with(|| {
@@ -160,8 +160,8 @@ impl BreakableNodes {
     }
 }
 
-/// Returns all cuts that divide the group `group` by opening all, half or a quarter of its closed faces
-/// across one axis.
+/// Returns all cuts that divide the octants of `group` by opening all, half or a quarter of their closed
+/// faces across one axis.
 fn cuts<D: Dim>(closed: Closed, group: u8) -> impl Iterator<Item = NodeCut> {
     (0..D::N).flat_map(move |axis| {
         let others = 3usize.pow(D::N as u32 - 1);
@@ -199,8 +199,9 @@ fn part_of<D: Dim>(axis: usize, mut choice: usize) -> u8 {
     part
 }
 
-/// Returns the octants that stay connected to the far side of any opened face. Returns `None` if the near
-/// side of an opened face is among them, because the cut then divides nothing.
+/// Returns the octants on the far side of the opened faces, with all octants that stay connected to them.
+/// `opened` is the mask of the octants on the near side of these faces. Returns `None` if one of those stays
+/// connected, because the cut then divides nothing.
 fn side_of<D: Dim>(mut closed: Closed, axis: usize, opened: u8) -> Option<u8> {
     closed[axis] &= !opened;
     let near = opened;
@@ -221,8 +222,8 @@ fn side_of<D: Dim>(mut closed: Closed, axis: usize, opened: u8) -> Option<u8> {
     }
 }
 
-/// Returns whether the voxel of an octant would become a crumb or hang by one face if it were separated at
-/// the point. This is so if, away from the point, at most one of its faces is closed.
+/// Returns whether the voxel of an octant would become a crumb or stay attached by a single face, if it were
+/// separated at the point. This is so if at most one of its faces that do not touch the point is closed.
 fn would_crumble<D: Dim>(around: &PointNeighbourhood<D>, octant: usize) -> bool {
     let is_held = |axis: &usize| around.is_far_face_closed(octant, *axis);
     (0..D::N).filter(is_held).count() <= 1

@@ -1,7 +1,7 @@
 //! Fracture: selects the shared nodes that are released next.
 //!
-//! A cut through a breakable node divides the voxels that share it into two sides A and B. The elements of
-//! either side pull at the node with F_A and F_B:
+//! A cut through a breakable node divides the voxels that share the node into sides A and B. The elements of
+//! side A pull at the node with the force F_A, those of side B with F_B:
 //!
 //! ```text
 //!       A │ B        T = (F_B − F_A) / 2      n = mean rotation · axis
@@ -10,8 +10,8 @@
 //! ```
 //!
 //! T is the pull across the cut, with the part Tₙ along the normal n of the cut and the part Tₛ in its plane.
-//! The tension σ is compared with the strength at a smooth surface, and with the toughness at the tip of a
-//! crack. A node fails if it is overloaded for some milliseconds.
+//! The tension σ is compared with a threshold: the strength at a smooth surface, toughness / √voxel at the
+//! tip of a crack. A node fails if it is overloaded for some milliseconds.
 
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::NodeId;
@@ -24,20 +24,21 @@ use crate::soft_body::element_forces::Row;
 use fearless_simd::Simd;
 use glam::Vec3;
 
-/// Node that fails.
+/// Node that fails, so that its release advances a crack.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Failure {
     /// Id of the node.
     pub node: NodeId,
     /// Lattice point of the node.
     pub at: Point,
-    /// Octants on one side of the crack.
+    /// Mask of the octants that the crack separates from the others at the node.
     pub side: u8,
-    /// Axis across which faces open.
+    /// Axis normal to the faces that open.
     axis: usize,
-    /// Ratio of the tension to the threshold of the node.
+    /// Tension divided by the threshold of the node.
     pub excess: f32,
-    /// Released elastic energy [J], from the tension and the volume of a voxel.
+    /// Estimate of the released elastic energy [J]: σ² / (2 Y) times the volume of a voxel, with the tension
+    /// σ and Young's modulus Y.
     pub energy: f32,
 }
 
@@ -47,17 +48,19 @@ const DAMAGE_TIME: f32 = 0.004;
 /// Time in which a damaged node heals once it is no longer overloaded [s]. It is longer than [`DAMAGE_TIME`],
 /// so that oscillating loads can break nodes too.
 const HEALING_TIME: f32 = 4.0 * DAMAGE_TIME;
-/// Upper limit of the overload, tension / threshold − 1, with which damage grows. So a short impact does less
-/// damage than a sustained pull.
+/// Upper limit of the overload, tension / threshold − 1, in the growth of damage. Because of this limit, a
+/// short impact does less damage than a sustained pull.
 const MAX_OVERLOAD: f32 = 3.0;
-/// Factor on the threshold of cuts that separate a single voxel. Without it, cracks leave a trail of crumbs.
+/// Factor on the threshold of cuts that would make a crumb or leave a voxel attached by a single face.
+/// Without it, cracks leave a trail of crumbs.
 const CRUMB_FACTOR: f32 = 1.3;
-/// Duration of the cooldown after a release, given by the number of voxels that a wave travels in this time.
-/// The wave reaches the nodes around the release and returns.
+/// Cooldown after a release, as the distance that the fastest pressure wave travels in this time [voxels]. It
+/// lasts until the wave of the release has reached nodes two voxels away and returned.
 const COOLDOWN_VOXELS: f64 = 4.0;
 
-/// Updates the damage of all breakable nodes after `duration` [s], and returns the nodes that fail now, the
-/// most overloaded first. No two of these nodes are near each other, except along the front of one crack.
+/// Updates the damage of all breakable nodes after a fracture round of `duration` [s], and returns the nodes
+/// that fail now, the most overloaded first. No two of these nodes are near each other, except along the
+/// front of one crack.
 pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
     body.cooldowns_mut().pass(duration);
     if !body.can_tear() {
@@ -70,13 +73,13 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
         let nodes = body.breakable_nodes().among(first..first + damage.len());
         on_widest_lanes!(simd => for (id, node) in nodes {
             let damage = &mut damage[id.index() - first];
-            // Tests undamaged nodes only in every second call, to save time.
+            // Tests undamaged nodes only in every second round, to save time.
             if body.pieces().sleeps(id)
                 || *damage == 0.0 && (id.0 ^ body.cooldowns().rounds) & 1 == 1
             {
                 continue;
             }
-            // A fast test excludes most nodes, which are far from failure.
+            // A fast test excludes most nodes: those far from failure.
             let failure = match is_surely_intact(simd, body, id, node) {
                 true => None,
                 false => worst_cut(body, id, node),
@@ -105,8 +108,8 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
 }
 
 /// Returns those failures that have no worse failure nearby; `found` is sorted, the worst first. Failures in
-/// one plane are all kept: they form the front of one crack, in 3D a line, which advances as a whole. If one
-/// node per neighbourhood had to wait for another, cracks would advance too slowly, and the load would start
+/// one plane do not exclude each other: they form the front of one crack, in 3D a line, which advances as a
+/// whole. If only the worst of them were released, cracks would advance too slowly, and the load would start
 /// new ones.
 fn without_worse_neighbour(found: Vec<Failure>) -> Vec<Failure> {
     let mut chosen: Vec<Failure> = Vec::new();
@@ -122,9 +125,10 @@ fn without_worse_neighbour(found: Vec<Failure>) -> Vec<Failure> {
     chosen
 }
 
-/// Returns whether no cut through a breakable node can be overloaded. The pull of a cut is at most half the
-/// sum of all force magnitudes |f| of the n elements, with (Σ|f|)² ≤ n Σ|f|². A small margin allows for
-/// rounding. The area is that of one face, the least that a cut opens.
+/// Returns whether the node is certain to withstand all cuts through it, from a bound that is fast to
+/// compute. The pull of a cut is at most half the sum of the force magnitudes |f| of the n voxels around the
+/// node, and (Σ|f|)² ≤ n Σ|f|². The factor 0.2501 is ¼ and a margin for rounding. The area is that of one
+/// face, the least that a cut opens.
 #[inline(always)]
 fn is_surely_intact<D: Dim, S: Simd>(
     simd: S,
@@ -146,7 +150,7 @@ fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Op
         forces[octant] = force;
     }
     let total = forces.into_iter().sum::<Row>();
-    // Sum of the rotations of the elements around the node, computed on demand.
+    // Sum of the rotations of the elements around the node, computed only if a cut needs it.
     let mut turn: Option<[Vec3; 3]> = None;
     let mut worst: Option<(f32, f32, NodeCut)> = None;
     for cut in body.breakable_nodes().cuts(node) {
@@ -188,12 +192,12 @@ fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Op
     })
 }
 
-/// Returns the octants of a mask.
+/// Iterates over the octants whose bits are set in a mask.
 fn octants(mask: u8) -> impl Iterator<Item = usize> {
     (0..8).filter(move |octant| mask >> octant & 1 == 1)
 }
 
-/// Returns the sum of the rotations of all elements around a node.
+/// Returns the sum of the rotation matrices of all elements around a node.
 fn total_turn<D: Dim>(body: &SoftBody<D>, id: NodeId) -> [Vec3; 3] {
     let mut turn = [Vec3::ZERO; 3];
     for owner in body.mesh().carrier_ids(id) {
@@ -205,13 +209,13 @@ fn total_turn<D: Dim>(body: &SoftBody<D>, id: NodeId) -> [Vec3; 3] {
     turn
 }
 
-/// Returns the part of a face that belongs to one of its corners [m or m²]: half an edge in 2D, a quarter of
-/// a square in 3D.
+/// Returns the part of a voxel's face that belongs to one of its corners [m in 2D, m² in 3D]: half an edge in
+/// 2D, a quarter of a square in 3D.
 fn face_area<D: Dim>(size: f32) -> f32 {
     (1..D::N).fold(1.0, |area, _| area * 0.5 * size)
 }
 
-/// Returns the tension of a pull across a plane [N]: the opening part counts in full, the shear part by half.
+/// Returns √(Tₙ² + ¼ Tₛ²) [N] for a pull with the part Tₙ along a unit normal and the part Tₛ across it.
 fn tension(pull: Row, normal: Row) -> f32 {
     let opening = pull.dot(normal);
     let shear = (pull.dot(pull) - opening * opening).max(0.0);

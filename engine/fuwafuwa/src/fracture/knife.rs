@@ -61,15 +61,17 @@ pub(crate) use knife_state::{KnifeState, Knives};
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Knife<D: Dim> {
     /// Rigid body that holds the knife, kinematic or coupled. If it is a
-    /// [sensor](crate::RigidBody::is_sensor), it touches nothing except with the edge.
+    /// [sensor](crate::RigidBody::is_sensor), the rigid body has no contacts, and only the edge touches soft
+    /// bodies.
     pub holder: RigidBodyHandle,
     /// Ends of the edge in local coordinates of the holder [m]. In 2D only the midpoint of the edge is used,
     /// and soft bodies are sheets 1 m thick.
     pub edge: [D::Vector; 2],
-    /// Cutting direction in local coordinates of the holder, within 30° of a right angle to the edge. Its
-    /// length does not matter, but must be 0.01 to 100.
+    /// Cutting direction in local coordinates of the holder, within 30° of a right angle to the edge. The
+    /// length of this vector has no effect, but must be 0.01 to 100.
     pub toward: D::Vector,
-    /// Radius of the edge [m], 0 to 1, default 0 (sharp); 1e-4 is dull.
+    /// Radius of the edge [m], 0 to 1, default 0 (sharp). A larger radius requires more force; 1e-4 is a dull
+    /// edge.
     pub radius: f32,
     /// Height of the blade from the edge to the back [m], 0 to 10, default 0.02. The flat of the blade
     /// resists sideways motion.

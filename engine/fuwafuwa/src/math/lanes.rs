@@ -1,8 +1,8 @@
-//! Eight numbers side by side, one for each element of a batch.
+//! SIMD vectors of eight numbers, one for each element of a batch.
 //!
-//! The code is written once on the vectors of `fearless_simd`, and compiled for each kind of machine. Every
-//! operation works within a lane and rounds once, so that all machines give the same bits. Only + − × ÷ √,
-//! comparisons and selections are used; no fused or approximate operations.
+//! The code is written once on the vectors of `fearless_simd`, and compiled for several instruction sets.
+//! Every operation works within a lane and rounds once, so that all machines give the same bits. Only + − × ÷
+//! √, comparisons and selections are used; no fused or approximate operations.
 
 use super::row::Row;
 use fearless_simd::{f32x4, f32x8, prelude::*};
@@ -13,12 +13,12 @@ pub const LANES: usize = 8;
 /// One number for each element of a batch.
 pub type Lanes<S> = f32x8<S>;
 
-/// One number for each lane, in memory.
+/// Array that holds one number for each lane.
 pub type Eight = [f32; LANES];
 
-/// Evaluates an expression with the widest lanes `$simd` of the machine. Each kind of lanes adds a copy of
-/// all code that the expression calls, so on x86-64 only two kinds are used. AVX-512 gains little with eight
-/// lanes, and few machines lie between SSE2 and AVX2.
+/// Evaluates an expression with `$simd`, the widest instruction set that the machine supports. Each
+/// instruction set adds a copy of all code that the expression calls. So on x86-64 only SSE2 and AVX2 are
+/// used: AVX-512 gains little with eight lanes, and few machines have instruction sets between SSE2 and AVX2.
 #[cfg(target_arch = "x86_64")]
 macro_rules! on_widest_lanes {
     ($simd:ident => $do:expr) => {{
@@ -55,7 +55,7 @@ pub fn splat<S: Simd>(simd: S, value: f32) -> Lanes<S> {
     Lanes::simd_from(simd, value)
 }
 
-/// Loads lanes from memory.
+/// Loads an array into lanes.
 #[inline(always)]
 pub fn load<S: Simd>(simd: S, values: &Eight) -> Lanes<S> {
     Lanes::load_array_ref(simd, values)
@@ -67,19 +67,20 @@ pub fn at_least<S: Simd>(value: Lanes<S>, least: Lanes<S>) -> Lanes<S> {
     value.simd_gt(least).select(value, least)
 }
 
-/// Returns `yes` in lanes where `value` > 0, `no` elsewhere.
+/// Returns `yes` in the lanes where `value` > 0, and `no` in all other lanes.
 #[inline(always)]
 pub fn if_positive<S: Simd>(value: Lanes<S>, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
     value.simd_gt(0.0).select(yes, no)
 }
 
-/// Mask of the lanes where `value` > 0.
+/// Returns the bit mask of the lanes where `value` > 0.
 #[inline(always)]
 pub fn positive<S: Simd>(value: Lanes<S>) -> u8 {
     value.simd_gt(0.0).to_bitmask() as u8
 }
 
-/// Loads the rows at the eight indices `places`, one row per lane, and returns their first three columns.
+/// Loads the rows at the eight indices `places`, and returns their first three columns: lane k of each column
+/// belongs to the row at `places[k]`.
 #[inline(always)]
 pub fn gather<S: Simd>(simd: S, rows: &[Row], places: &[u32; LANES]) -> [Lanes<S>; 3] {
     let [a, b, c, d, e, f, g, h] = *places;
@@ -103,7 +104,7 @@ fn row<S: Simd>(simd: S, rows: &[Row], place: u32) -> f32x4<S> {
     f32x4::load_array_ref(simd, rows[place as usize].as_array())
 }
 
-/// Transposes four rows, and returns the first three columns.
+/// Transposes four rows of four numbers, and returns the first three columns.
 #[inline(always)]
 fn columns<S: Simd>(a: f32x4<S>, b: f32x4<S>, c: f32x4<S>, d: f32x4<S>) -> [f32x4<S>; 3] {
     let (ac, bd) = (a.zip_low(c), b.zip_low(d));
@@ -113,9 +114,9 @@ fn columns<S: Simd>(a: f32x4<S>, b: f32x4<S>, c: f32x4<S>, d: f32x4<S>) -> [f32x
 
 #[cfg(target_arch = "x86_64")]
 fearless_simd::kernel!(
-    /// Evaluates [`columns`] for two sets of four rows at once, one in the low and one in the high halves of
-    /// the vectors. This takes seven shuffles instead of fourteen. Uses intrinsics, because `fearless_simd`
-    /// has no zip within each half.
+    /// Evaluates [`columns`] for two sets of four rows at once: the low halves of `a` to `d` are one set, the
+    /// high halves the other. This takes seven shuffles instead of fourteen. Uses intrinsics, because
+    /// `fearless_simd` has no zip within each half.
     #[inline(always)]
     fn columns_of_both_halves(avx2: Avx2, a: Eight, b: Eight, c: Eight, d: Eight) -> [Eight; 3] {
         use std::arch::x86_64::*;
@@ -130,7 +131,8 @@ fearless_simd::kernel!(
     }
 );
 
-/// Stores eight vectors with 2 or 3 components, one after the other, from three columns.
+/// Stores eight vectors one after the other. `columns` holds their x, y and z components; `components` is 2
+/// or 3.
 #[inline(always)]
 pub fn scatter<S: Simd>(simd: S, columns: [Lanes<S>; 3], components: usize, vectors: &mut [f32]) {
     let [x, y, z] = columns;
@@ -156,7 +158,8 @@ pub fn scatter<S: Simd>(simd: S, columns: [Lanes<S>; 3], components: usize, vect
         store(f, vectors, 20);
         return;
     }
-    // Lists every component, because the compiler turns this into the best shuffles of each instruction set.
+    // Lists every component, because the compiler turns this list into the best shuffles of each instruction
+    // set.
     store(four(simd, [x[0], y[0], z[0], x[1]]), vectors, 0);
     store(four(simd, [y[1], z[1], x[2], y[2]]), vectors, 4);
     store(four(simd, [z[2], x[3], y[3], z[3]]), vectors, 8);
@@ -167,8 +170,8 @@ pub fn scatter<S: Simd>(simd: S, columns: [Lanes<S>; 3], components: usize, vect
 
 #[cfg(target_arch = "x86_64")]
 fearless_simd::kernel!(
-    /// Interleaves the columns x, y and z of eight vectors, four in the low and four in the high halves of
-    /// the registers. Faster than the portable version in `scatter`.
+    /// Interleaves the components x, y and z of eight vectors: the low halves of the result hold the first
+    /// four vectors, the high halves the last four. Faster than the portable version in `scatter`.
     #[inline(always)]
     fn vectors_of_both_halves(avx2: Avx2, x: Eight, y: Eight, z: Eight) -> [Eight; 3] {
         use std::arch::x86_64::*;
@@ -196,7 +199,7 @@ fn store<S: Simd>(values: f32x4<S>, numbers: &mut [f32], first: usize) {
 }
 
 /// Returns the sum of several rows of four numbers, added in the order of `places`. Each place is the index
-/// in `numbers` at which a row begins. Unused places are 0, where `numbers` holds zeros.
+/// in `numbers` at which a row begins. An unused place is 0, because `numbers` begins with a row of zeros.
 #[inline(always)]
 pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     let mut sum = row_at(simd, numbers, places[0]);
@@ -207,7 +210,7 @@ pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
 }
 
 /// Returns, for each of the four columns, the sum of squares over several rows. Each of `places` is the index
-/// in `numbers` at which a row begins. Unused places are 0, where `numbers` holds zeros.
+/// in `numbers` at which a row begins. An unused place is 0, because `numbers` begins with a row of zeros.
 #[inline(always)]
 pub fn sum_of_squares<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
     let mut sum = f32x4::splat(simd, 0.0);

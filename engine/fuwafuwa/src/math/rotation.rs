@@ -1,12 +1,12 @@
-//! Rotations.
+//! Rotations in 2D and 3D.
 
 use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::hash::hash_state;
 use glam::DVec3;
 use glam::Vec3;
 
-/// Rotation, stored as a unit quaternion. Identical on every machine, because it does not use the sine of the
-/// system library.
+/// Rotation, stored as a unit quaternion. Results are identical on every machine, because no sine function of
+/// a system library is used.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rotation {
@@ -23,7 +23,7 @@ impl Default for Rotation {
 }
 
 impl Rotation {
-    /// Identity.
+    /// Identity rotation.
     pub const NONE: Self = Self {
         quaternion: [0.0, 0.0, 0.0, 1.0],
     };
@@ -98,7 +98,7 @@ impl Rotation {
         (axis * (sign * stretch)).as_vec3()
     }
 
-    /// Returns the three rotated axes.
+    /// Returns the rotated unit vectors of the three axes: the columns of the rotation matrix.
     pub fn axes(self) -> [Vec3; 3] {
         Vec3::AXES.map(|axis| self.apply(axis))
     }
@@ -116,7 +116,8 @@ impl Rotation {
         (centre + turned).as_vec3()
     }
 
-    /// Returns the rotation itself in 3D, and only its part about the third axis in 2D.
+    /// Returns the rotation as it acts in the dimension: unchanged in 3D, and only its part about the third
+    /// axis in 2D.
     pub(crate) fn seen_in<D: Dim>(self) -> Self {
         match D::N {
             2 => self.in_third_axis(),
@@ -135,7 +136,7 @@ impl Rotation {
         }
     }
 
-    /// Returns the quaternion that first applies `other` and then `self`; not normalised.
+    /// Returns the quaternion, not normalised, of the rotation that first applies `other` and then `self`.
     pub(crate) fn after(self, other: [f32; 4]) -> [f32; 4] {
         product(self.quaternion, other.map(f64::from)).map(|part| part as f32)
     }
@@ -162,7 +163,7 @@ fn squared([x, y, z, w]: [f64; 4]) -> f64 {
     x * x + y * y + z * z + w * w
 }
 
-/// Returns the quaternion product a b: first b, then a.
+/// Returns the quaternion product a b, which rotates first by b and then by a.
 fn product([x, y, z, w]: [f64; 4], [bx, by, bz, bw]: [f64; 4]) -> [f64; 4] {
     [
         w * bx + x * bw + y * bz - z * by,

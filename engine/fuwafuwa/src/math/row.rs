@@ -42,20 +42,20 @@ impl Row {
         Vec3::new(x, y, z)
     }
 
-    /// Dot product over all four components.
+    /// Returns the dot product over all four components.
     #[inline(always)]
     pub fn dot(self, other: Self) -> f32 {
         let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
         a * e + b * f + c * g + d * h
     }
 
-    /// Length over all four components.
+    /// Returns the length over all four components.
     #[inline(always)]
     pub fn length(self) -> f32 {
         self.dot(self).sqrt()
     }
 
-    /// Whether all four components are finite.
+    /// Returns whether all four components are finite.
     #[inline(always)]
     pub fn is_finite(self) -> bool {
         self.0.iter().all(|component| component.is_finite())

@@ -5,8 +5,8 @@ use glam::Vec3;
 /// Linear and angular velocity of a body, with three components in both 2D and 3D.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Twist {
-    /// Linear velocity of the centre of mass [m/s].
+    /// Linear velocity [m/s] of the centre of mass, or of the local origin of a kinematic or coupled body.
     pub linear: Vec3,
-    /// Angular velocity about the centre of mass [rad/s]; in 2D only the third component is not 0.
+    /// Angular velocity [rad/s]; in 2D only the third component is not 0.
     pub angular: Vec3,
 }

@@ -11,12 +11,12 @@ use glam::{Vec2, Vec3};
 pub struct Velocity<D: Dim> {
     /// Linear velocity [m/s] of the centre of mass, or of the local origin of a kinematic or coupled body.
     pub linear: D::Vector,
-    /// Angular velocity about that point [rad/s]; in 2D positive is counterclockwise.
+    /// Angular velocity [rad/s]; in 2D positive is counterclockwise.
     pub angular: D::Angular,
 }
 
 impl<D: Dim> Velocity<D> {
-    /// Returns a velocity without rotation [m/s].
+    /// Returns a velocity with a linear part [m/s] and no rotation.
     pub fn linear(linear: D::Vector) -> Self {
         Self {
             linear,
@@ -24,7 +24,7 @@ impl<D: Dim> Velocity<D> {
         }
     }
 
-    /// Returns a velocity of pure rotation about the centre of mass [rad/s].
+    /// Returns a velocity with an angular part [rad/s] and no linear part.
     pub fn angular(angular: D::Angular) -> Self {
         Self {
             angular,

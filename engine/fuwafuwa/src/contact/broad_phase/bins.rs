@@ -11,8 +11,8 @@ use std::ops::Range;
 /// to it rounds that number.
 const LARGE: f32 = 12_582_912.0;
 
-/// Points sorted into the bins of a periodic grid. Two points share a bin if they are a multiple of the
-/// grid's extent apart. So a few bins cover coordinates of up to two million bin widths.
+/// Points sorted into the bins of a periodic grid: positions that differ by a multiple of the grid's extent
+/// share a bin. So a few bins cover coordinates of up to two million bin widths.
 #[derive(Clone, Debug)]
 pub struct Bins {
     /// Inverse width of a bin [1/m].
@@ -21,13 +21,14 @@ pub struct Bins {
     bits: usize,
     /// Bit mask that wraps a bin coordinate to the periodic grid: the number of bins on an axis, minus 1.
     mask: i32,
-    /// Index of the first point of each bin: the points at `start[b]..start[b + 1]` are in bin b, ascending
-    /// by number.
+    /// Index in `numbers` of the first point of each bin. The points `numbers[start[b]..start[b + 1]]` are in
+    /// bin b, in ascending order.
     start: Vec<u32>,
-    /// Numbers of the points in bin order.
+    /// Numbers of the points, sorted by bin. The number of a point is its index in the list given to
+    /// [`Bins::new`].
     numbers: Vec<u32>,
-    /// Positions in bin order, axis by axis [m]; padded, so that a SIMD read of eight values may start at any
-    /// index.
+    /// Coordinates of the points [m], in one list for each axis and in the order of `numbers`. Padded, so
+    /// that a SIMD read of eight values may start at any index.
     places: [Vec<f32>; 3],
 }
 
@@ -68,26 +69,28 @@ impl Bins {
         bins
     }
 
-    /// Iterates over the index ranges of the bins that contain points.
+    /// Iterates over the bins that contain points. Each item is the index range of the bin's points in
+    /// `numbers`.
     pub fn filled(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         let ends = self.start.windows(2);
         let ranges = ends.map(|ends| ends[0] as usize..ends[1] as usize);
         ranges.filter(|range| !range.is_empty())
     }
 
-    /// Returns the point numbers in bin order.
+    /// Returns the numbers of the points, sorted by bin. The number of a point is its index in the list given
+    /// to [`Bins::new`].
     pub fn numbers(&self) -> &[u32] {
         &self.numbers
     }
 
-    /// Returns the position of the point at an index in bin order [m].
+    /// Returns the position [m] of the point number `numbers[place]`.
     #[inline(always)]
     pub fn point(&self, place: usize) -> Row {
         let [x, y, z] = self.places.each_ref().map(|places| places[place]);
         Row::from_array([x, y, z, 0.0])
     }
 
-    /// Divides the bins into ranges that threads can search independently.
+    /// Iterates over ranges of bins that threads can search independently.
     pub fn shares(&self) -> impl Iterator<Item = Range<usize>> + use<> {
         let bins = self.start.len() - 1;
         let firsts = (0..bins).step_by(CHUNK_SIZE);
@@ -95,12 +98,12 @@ impl Bins {
     }
 
     /// Finds the pairs of points within `reach` [m] of each other, and calls `visit` with their indices in
-    /// bin order. `reach` may be at most the width of a bin. A call searches only from the given `bins`:
+    /// `numbers`. `reach` may be at most the width of a bin. A call searches only from the given `bins`:
     /// calls with all ranges of [`Bins::shares`] together visit each pair once.
     ///
-    /// `is_out` receives the index of a point and the first of eight further indices. It returns a mask of
-    /// those among the eight to skip. Two bins are not compared if `is_idle` is true for the index ranges of
-    /// both.
+    /// `is_out` receives the index of a point and the first of eight consecutive indices of other points. It
+    /// returns a bit mask of those of the eight to skip. `is_idle` receives the index range of a bin's
+    /// points. Two bins are not compared if it returns true for both.
     #[inline(always)]
     pub fn pairs<D: Dim, S: Simd>(
         &self,
@@ -111,7 +114,8 @@ impl Bins {
         is_out: impl Fn(usize, usize) -> u64,
         mut visit: impl FnMut(usize, usize),
     ) {
-        // Each bin searches only the bins ahead of it, so that two adjacent bins are compared once.
+        // Offsets [dy, dz] of the rows of three bins that each bin searches, in addition to the next bin of
+        // its own row. These bins are half of its neighbours, so that two adjacent bins are compared once.
         let ahead: &[[i32; 2]] = match D::N {
             2 => &[[1, 0]],
             _ => &[[1, 0], [-1, 1], [0, 1], [1, 1]],
@@ -158,8 +162,8 @@ impl Bins {
         }
     }
 
-    /// Finds the indices of the points within `reach` [m] of `at`. `is_out` receives the first of eight
-    /// indices and returns a mask of those to skip.
+    /// Sets `near` to the indices in `numbers` of the points within `reach` [m] of the position `at` [m].
+    /// `is_out` receives the first of eight consecutive indices, and returns a bit mask of those to skip.
     #[inline(always)]
     pub fn near<D: Dim, S: Simd>(
         &self,
@@ -192,7 +196,8 @@ impl Bins {
         }
     }
 
-    /// Adds the indices of those points in a range that are within `reach` [m] of `at`.
+    /// Adds to `near` the indices of those points in a range that are within `reach` [m] of the position `at`
+    /// [m].
     #[inline(always)]
     fn look<S: Simd>(
         &self,
@@ -227,8 +232,8 @@ impl Bins {
         }
     }
 
-    /// Returns the ranges of `count` bins in a row along the first axis: one range, and a second one if the
-    /// row wraps around the grid.
+    /// Returns the index ranges of the points in `count` bins, from the bin at [x, y, z] on along the first
+    /// axis. The second range is empty, unless the bins wrap around the periodic grid.
     #[inline(always)]
     fn row(&self, [x, y, z]: Point, count: i32) -> [Range<usize>; 2] {
         let (x, start) = (x & self.mask, self.bin([0, y, z]) as usize);
@@ -242,7 +247,7 @@ impl Bins {
         }
     }
 
-    /// Returns the range of the points in the bins from `first` to `last`.
+    /// Returns the index range of the points in the bins from `first` to `last`, both included.
     #[inline(always)]
     fn range(&self, first: usize, last: usize) -> Range<usize> {
         self.start[first] as usize..self.start[last + 1] as usize
@@ -251,8 +256,8 @@ impl Bins {
     /// Returns the coordinates of the bin of a point, not yet wrapped to the periodic grid.
     #[inline(always)]
     fn square(&self, at: &Row) -> Point {
-        // Adding `LARGE` leaves the coordinate, rounded to whole bins, in the lowest bits. This is faster
-        // than a checked conversion.
+        // Adding `LARGE` leaves the coordinate, in bins and rounded to an integer, in the lowest bits of the
+        // sum. This is faster than a checked conversion.
         let whole = |along: f32| (along * self.inverse + LARGE).to_bits() as i32;
         [whole(at[0]), whole(at[1]), whole(at[2])]
     }

@@ -6,9 +6,9 @@ use crate::foundation::ids::{ElementId, Id, IndexVec, NodeId, PieceId, id};
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 
-/// Maximum distance on each axis, at rest, of two spheres that count as neighbours in a piece [voxels]. The
-/// search for all pairs skips neighbours. It reaches 1 + MARGIN + 2 SLACK = 2 voxels between resting spheres.
-/// With a smaller value here, it would list adjacent surface elements all the time.
+/// Maximum distance along each axis, in the undeformed body, between two spheres of a piece that count as
+/// neighbours [voxels]. The full search for pairs skips neighbours. Its search distance is 1 + MARGIN + 2
+/// SLACK = 2 voxels. With a smaller `NEAR`, it would list adjacent elements of an undeformed surface.
 pub const NEAR: u16 = 2;
 
 id! {
@@ -17,7 +17,7 @@ id! {
 }
 
 impl SphereId {
-    /// Marks a missing sphere.
+    /// Value that stands for no sphere.
     pub const NONE: Self = Self(u32::MAX);
 }
 
@@ -30,16 +30,17 @@ pub struct ContactSphere {
     pub element: ElementId,
     /// Piece number.
     pub piece: PieceId,
-    /// Radius: half a voxel [m].
+    /// Radius: half the width of a voxel [m].
     pub radius: f32,
-    /// Whether the piece sleeps.
+    /// Whether the sphere's piece sleeps.
     pub asleep: bool,
-    /// Mask of the bare faces of the voxel; the bit of a face is 2 · axis + side, with side 1 = far.
+    /// Bit mask of the bare faces of the voxel. On each axis, bit 2 · axis is the face on the low side, and
+    /// bit 2 · axis + 1 the face on the high side.
     bare: u8,
     /// Voxel of the element.
     voxel: [i16; 3],
-    /// Mask of the voxels around the sphere's voxel that share a node with that voxel. Bit x + 3 y + 9 z
-    /// stands for the offset (x, y, z) − 1.
+    /// Bit mask of the voxels around the sphere's voxel that share a node with that voxel. Bit x + 3 y + 9 z
+    /// stands for the voxel at the offset (x − 1, y − 1, z − 1).
     bound: u32,
     /// Corner nodes of the element; in 2D only the first four are used.
     pub nodes: [NodeId; 8],
@@ -56,7 +57,7 @@ pub fn mean<D: Dim, I: Id>(rows: &IndexVec<I, Row>, nodes: &[I; 8]) -> Row {
 }
 
 impl ContactSphere {
-    /// Returns the contact sphere of an element, if the element is at the surface.
+    /// Returns the contact sphere of an element; `None` if the element is not at the surface.
     pub fn of<D: Dim>(slot: BodySlot, body: &SoftBody<D>, id: ElementId) -> Option<Self> {
         let bare = body.exposed_faces(id)?;
         if bare == 0 {
@@ -79,7 +80,8 @@ impl ContactSphere {
         })
     }
 
-    /// Returns the stable key: body and element.
+    /// Returns the body and element of the sphere. They identify the sphere, also after its number has
+    /// changed.
     pub fn key(&self) -> (BodySlot, ElementId) {
         (self.body, self.element)
     }
@@ -89,7 +91,7 @@ impl ContactSphere {
         self.voxel.map(i32::from)
     }
 
-    /// Returns the location of the sphere in its body.
+    /// Returns the voxel of the sphere, and which voxels around that voxel share a node with it.
     pub fn site(&self) -> Site {
         Site {
             body: self.body,
@@ -98,7 +100,7 @@ impl ContactSphere {
         }
     }
 
-    /// Returns the mean of a quantity over the corner nodes.
+    /// Returns the mean over the sphere's corner nodes of a quantity that `rows` holds for each node.
     #[inline]
     pub fn mean<D: Dim>(&self, rows: &IndexVec<NodeId, Row>) -> Row {
         mean::<D, _>(rows, &self.nodes)
@@ -135,7 +137,8 @@ impl ContactSphere {
         sum
     }
 
-    /// Returns the inverse effective mass of the sphere [1/kg].
+    /// Returns the inverse effective mass of the sphere [1/kg], for an impulse spread evenly over its corner
+    /// nodes.
     #[inline]
     pub fn inverse_mass<D: Dim>(&self, bodies: &SoftBodies<D>) -> f32 {
         let all = bodies.at(self.body).inverse_masses();
@@ -145,7 +148,7 @@ impl ContactSphere {
     }
 }
 
-/// Location of a sphere's element in its body, and its connections to neighbouring voxels.
+/// Voxel of a sphere, and its connections to the voxels around it.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Site {
     pub body: BodySlot,
@@ -155,13 +158,14 @@ pub struct Site {
 }
 
 impl Site {
-    /// Returns whether the body itself keeps two spheres apart, so that no contact is required. This is true
-    /// for neighbours that share a node. It is also true for spheres a and b with one voxel u between them if
-    /// a shares a node with u, and b with u.
+    /// Returns whether elastic forces keep the spheres of two voxels a and b apart, so that no contact is
+    /// required. If a and b are adjacent, this is true if they share a node. If they are two voxels apart, it
+    /// is true if both share a node with the same voxel u between them.
     ///
     /// ```text
-    ///   a─u─b   held      a┃b   not held: opposite crack faces,     a┃ ┃b   not held: a slot
-    ///                     u─u   though u holds both                 u───u
+    ///   a─u─b   held      a┃b   not held: a and b are on       a   b   not held: there is
+    ///                     u┃u   opposite crack faces           u   u   no voxel between a and b
+    ///                     u─u                                  u─u─u
     /// ```
     #[inline(always)]
     pub fn is_held_to(&self, other: &Self) -> bool {
@@ -181,11 +185,11 @@ impl Site {
     }
 }
 
-/// Table for [`Site::is_held_to`], for each offset of the second voxel from the first, up to two voxels per
-/// axis. The index of an offset is x + 5 y + 25 z, counted from −2. Each entry holds a mask and a rotation.
-/// The mask selects, among the voxels around the first voxel, those that can connect both. For direct
-/// neighbours it selects only the second voxel, because the mask [`Site::bound`] of a sphere includes its own
-/// voxel. The rotation aligns the second sphere's `bound` with that of the first.
+/// Table for [`Site::is_held_to`]: a mask and a rotation for each offset of the second voxel from the first,
+/// up to two voxels per axis. The entry of the offset (x, y, z) has the index (x + 2) + 5 (y + 2) + 25 (z +
+/// 2). The mask selects, among the 27 voxels around the first voxel, those that touch both voxels. If the two
+/// voxels are adjacent, the mask selects only the second voxel, because [`Site::bound`] includes a sphere's
+/// own voxel. The rotation aligns the bits of the second sphere's `bound` with those of the first.
 const COMMON: [(u32, u32); 125] = common();
 
 const fn common() -> [(u32, u32); 125] {

@@ -14,7 +14,8 @@ use crate::topology::changes::{Bookmark, Changes};
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spheres {
-    /// Body and element of each sphere. When the list is rebuilt, it keeps the order of these keys.
+    /// Body and element of each sphere in `list`, stored in files. If `list` is rebuilt, the spheres keep
+    /// this order.
     keys: IndexVec<SphereId, Key>,
     /// Contact spheres: first those of the initial surface, by body and element, then those that appeared at
     /// the surface later.
@@ -26,7 +27,7 @@ pub struct Spheres {
     /// Pairs of spheres on opposite crack faces: neighbours in a piece that only contacts keep apart.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub crack_faces: Vec<[SphereId; 2]>,
-    /// For each body, bookmark of the last change that the list contains.
+    /// For each body, bookmark of the last change of the body that `list` includes.
     #[cfg_attr(feature = "serde", serde(skip))]
     followed: IndexVec<BodySlot, Bookmark>,
     /// Awake spheres.
@@ -35,7 +36,8 @@ pub struct Spheres {
     /// Centres of the spheres [m]; those of sleeping spheres are updated only at the start of a tick.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub centres: IndexVec<SphereId, Row>,
-    /// Close spheres: awake spheres in pairs or escape contacts.
+    /// Close spheres: awake spheres in a pair or in an escape contact. Only close spheres are updated in
+    /// every substep.
     #[cfg_attr(feature = "serde", serde(skip))]
     close: Vec<SphereId>,
     /// Whether each sphere is in `close`.
@@ -55,7 +57,7 @@ hash_state! {
     }
 }
 
-/// Stable key of a sphere: body and element.
+/// Body and element of a sphere, which identify the sphere also after its number has changed.
 type Key = (BodySlot, ElementId);
 
 impl Spheres {
@@ -65,7 +67,8 @@ impl Spheres {
         self.keys.len()
     }
 
-    /// Returns the body slot of a sphere; works also before a new tick rebuilds the list.
+    /// Returns the body slot of a sphere. Uses only `keys`, so it works also before a new tick rebuilds
+    /// `list`.
     pub fn body_of(&self, sphere: SphereId) -> BodySlot {
         self.keys[sphere].0
     }
@@ -111,7 +114,7 @@ impl Spheres {
             if sphere.asleep != was_asleep {
                 changed.push(id);
             }
-            // Sleepers are not updated during the tick, so their centres are computed here.
+            // The centres of sleeping spheres are not updated during the tick, so they are computed here.
             if sphere.asleep && !was_asleep {
                 *centre = sphere.mean::<D>(body.positions());
             }
@@ -197,8 +200,8 @@ impl Spheres {
         numbers.map(|own| own.unwrap_or(SphereId::NONE)).collect()
     }
 
-    /// Applies a tear of a body. Adds the spheres of elements that are new, or have other nodes or bare
-    /// faces, to `changed`.
+    /// Applies a tear of a body to the list. Adds to `changed` the spheres of elements that are new, or whose
+    /// nodes or bare faces changed.
     pub fn tear<D: Dim>(
         &mut self,
         slot: BodySlot,
@@ -212,7 +215,8 @@ impl Spheres {
             let Some(sphere) = ContactSphere::of(slot, body, id) else {
                 continue;
             };
-            // A voxel at the surface stays there, so its sphere keeps its number when the element changes.
+            // A tear never removes a voxel from the surface. So the sphere of a voxel keeps its number if
+            // another element fills the voxel.
             let own = &mut self.by_voxel[slot][body.grid().index(sphere.voxel())];
             if *own == SphereId::NONE {
                 *own = self.list.next_id();
@@ -248,7 +252,8 @@ impl Spheres {
         }
     }
 
-    /// Adds the crack-face pairs of a sphere with other spheres for which `applies` is true.
+    /// Adds to `crack_faces` the pairs of a sphere with those near spheres of its piece that no elastic force
+    /// keeps apart from it. Tests only spheres for which `applies` is true.
     fn find_lips<D: Dim>(
         &mut self,
         id: SphereId,
@@ -276,8 +281,8 @@ impl Spheres {
         }
     }
 
-    /// Wakes the spheres of `pieces` and adds them to `changed`. `pieces` holds body and piece number,
-    /// ascending.
+    /// Wakes the spheres of `pieces` and adds them to `changed`. `pieces` holds body slots and piece numbers
+    /// in ascending order.
     pub fn wake(&mut self, pieces: &[(BodySlot, PieceId)], changed: &mut Vec<SphereId>) {
         for (id, sphere) in self.list.entries_mut() {
             if sphere.asleep && pieces.binary_search(&(sphere.body, sphere.piece)).is_ok() {
@@ -330,13 +335,13 @@ impl Spheres {
         }
     }
 
-    /// Returns the velocity of a sphere [m/s].
+    /// Returns the velocity of a sphere [m/s]: the mean velocity of its corner nodes.
     pub fn velocity<D: Dim>(&self, id: SphereId, bodies: &SoftBodies<D>) -> Row {
         let sphere = &self.list[id];
         sphere.mean::<D>(bodies.at(sphere.body).velocities())
     }
 
-    /// Returns whether the body itself keeps two spheres apart, so that no contact is required.
+    /// Returns whether elastic forces keep two spheres apart, so that no contact is required.
     pub fn holds(&self, a: SphereId, b: SphereId) -> bool {
         let [a, b] = [a, b].map(|id| self.list[id].site());
         a.is_held_to(&b)

@@ -1,10 +1,11 @@
-//! Contact spheres embedded in another piece, and their way out.
+//! Contact spheres that were forced into another piece, and how they get out.
 //!
 //! Inside a piece there are no contact spheres that could push anything out, so a crumb forced through a
-//! stretched surface would stay there. Therefore, once per tick, the elements of the larger pieces are tested
-//! for sphere centres inside them. Such a sphere is *embedded* (`captive` in the code), and the piece around
-//! it is its *host piece* (`captor`). The sphere has no contacts with its host piece, except for the *escape
-//! contact* with the nearest surface sphere of that piece, the *exit*.
+//! stretched surface would stay there. Therefore, once per tick, sphere centres are tested against the
+//! elements of pieces that have more elements than the sphere's own piece. A sphere with its centre in such
+//! an element is *embedded* (`captive` in the code), and the piece of that element is its *host piece*
+//! (`captor`). The sphere has no contacts with its host piece, except for the *escape contact* with the
+//! nearest surface sphere of that piece, the *exit*.
 
 use super::bins::Bins;
 use super::contact_sphere::{ContactSphere, SphereId};
@@ -19,8 +20,9 @@ use crate::soft_body::{SoftBodies, SoftBody};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
-/// Depth up to which exits are found in nearby bins [voxels]. For the few spheres that are embedded deeper,
-/// all exits are compared.
+/// Distance from an embedded sphere within which its exit, the nearest surface sphere of the host piece, is
+/// searched in bins [voxels]. For the few spheres that are embedded deeper, all surface spheres of the host
+/// piece are compared.
 const EXIT_REACH: f32 = 2.0;
 
 /// Sphere with its centre inside another piece.
@@ -44,7 +46,7 @@ pub struct Captives {
 }
 
 impl Captives {
-    /// Finds the spheres that are inside a piece larger than their own.
+    /// Finds the spheres with their centre in a piece that has more elements than their own piece.
     pub fn find<D: Dim>(
         &mut self,
         spheres: &Spheres,
@@ -98,8 +100,8 @@ impl Captives {
         }
         let placed = |&sphere: &SphereId| (sphere, own(&pieces, sphere), spheres.centres[sphere]);
         let mut placed: Vec<(SphereId, u32, Row)> = small.iter().map(placed).collect();
-        // Sorts the spheres along the first axis, so that each bounding box covers one range of them.
-        // Non-finite centres are removed, because no box contains them.
+        // Sorts the spheres along the first axis, so that the spheres within the width of a bounding box are
+        // consecutive. Non-finite centres are removed, because no box contains them.
         placed.retain(|(.., centre)| centre[0].is_finite());
         placed.sort_unstable_by(|(.., a), (.., b)| a[0].total_cmp(&b[0]));
         let mut near: Vec<SphereId> = Vec::new();
@@ -177,6 +179,7 @@ impl Captives {
 struct Exits {
     /// Numbers of the exit spheres, ascending.
     list: Vec<SphereId>,
+    /// Centres of the exit spheres [m].
     centres: Vec<Row>,
     bins: Bins,
     /// Radius within which the bins are searched for an exit [m].
@@ -201,7 +204,8 @@ impl Exits {
         }
     }
 
-    /// Returns the exit nearest to a position [m], or the first of several exits at that distance.
+    /// Returns the exit nearest to a position [m]. Of several exits at the same distance, returns the one
+    /// with the lowest number.
     fn nearest<D: Dim>(&self, at: Row) -> Option<SphereId> {
         let nearer = |nearest: (f32, u32), number: u32| {
             let apart = self.centres[number as usize] - at;
@@ -224,16 +228,18 @@ impl Exits {
 struct Inner {
     level: u8,
     element: ElementId,
-    /// Piece of the element.
+    /// Piece that contains the element.
     captor: HostPiece,
-    /// Number of elements in that piece.
+    /// Number of elements in this piece.
     count: u32,
+    /// Mean position of the element's nodes [m].
     centre: Row,
+    /// Distance from `centre` to the farthest node [m].
     radius: f32,
 }
 
-/// Returns the inner elements that overlap the box `within`, ascending by level. Includes only pieces with
-/// `has_inner`.
+/// Returns the inner elements that overlap the box `within`, ascending by level. Skips pieces for which
+/// `has_inner` is false.
 fn inner_elements<D: Dim>(bodies: &SoftBodies<D>, pieces: &Extents, within: &Extent) -> Vec<Inner> {
     let mut found = Vec::new();
     for (slot, body) in bodies.by_slot() {
@@ -323,7 +329,8 @@ impl Extent {
     }
 }
 
-/// Returns the extents of the pieces of a body, by piece number, with empty boxes.
+/// Returns an extent for each piece of a body: its number of elements and whether it has inner elements. The
+/// boxes are still empty.
 fn extents<D: Dim>(body: Option<&SoftBody<D>>) -> IndexVec<PieceId, Extent> {
     let Some(body) = body else {
         return IndexVec::default();
@@ -339,8 +346,7 @@ fn extents<D: Dim>(body: Option<&SoftBody<D>>) -> IndexVec<PieceId, Extent> {
 }
 
 impl<D: Dim> SoftBody<D> {
-    /// Returns whether a position [m] is in an element, under the assumption that the element is evenly
-    /// deformed.
+    /// Returns whether a position [m] is in an element. Treats the deformation of the element as affine.
     fn holds(&self, id: ElementId, at: Vec3) -> bool {
         let Some(element) = self.mesh().element(id) else {
             return false;

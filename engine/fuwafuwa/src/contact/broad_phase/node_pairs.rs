@@ -14,18 +14,19 @@ use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 use std::ops::Range;
 
-/// Distance that a node may move beyond the motion predicted from its velocity before it is searched again
-/// [voxels]. A larger value makes the lists longer, a smaller one searches more often.
+/// Distance by which a node may exceed the motion predicted from its velocity before its pairs are searched
+/// again [voxels]. A larger value makes the list of pairs longer; a smaller one makes searches more frequent.
 const SLACK: f32 = 0.4;
-/// The same distance for a moving rigid body [voxels]. It is larger than [`SLACK`], because the coupling
-/// force accelerates hands strongly.
+/// Distance by which a moving rigid body may exceed the motion predicted from its velocity before all pairs
+/// are searched again [voxels]. It is larger than [`SLACK`], because the coupling force accelerates hands
+/// strongly.
 const HAND_SLACK: f32 = 1.0;
 
-/// Width of a bin [voxels]. A rigid shape is first tested against whole bins, and only in nearby bins against
-/// each node.
+/// Width of a bin of nodes [voxels]. A rigid shape is first tested against whole bins, and only in nearby
+/// bins against each node.
 const SQUARE: f32 = 4.0;
 
-/// Node that may touch a rigid shape.
+/// Pair of a node and a rigid body that may touch.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NodePair {
@@ -37,8 +38,8 @@ pub struct NodePair {
     pub node: NodeId,
     /// Impulses of the contact.
     pub impulse: Impulse,
-    /// Value of [`NodePairs::travel`] up to which the node cannot touch the rigid body, if that body does not
-    /// move [m].
+    /// Limit for [`NodePairs::travel`] [m]: up to this value, the node cannot touch the rigid body while the
+    /// rigid body rests.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub clear: f32,
 }
@@ -50,20 +51,22 @@ hash_state! { struct NodePair { rigid, body, node, impulse } skip { clear } }
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NodePairs {
     /// Pairs, ascending by rigid body, soft body and node; sleeping nodes included. Only pairs with an
-    /// impulse are part of the hashed state: the others depend on the time of the last search.
+    /// impulse are part of the hashed state: which pairs without an impulse are listed depends on the time of
+    /// the last search.
     #[cfg_attr(feature = "serde", serde(serialize_with = "serialize_known"))]
     pub list: Vec<NodePair>,
     /// Upper bound of the distance that any node has moved since the last full search [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub travel: f32,
-    /// Position of each node at its last search, and as the fourth component its allowed distance from there
-    /// [m], by body and node.
+    /// For each body and node, the position at which the pairs of the node were last searched [m]. The fourth
+    /// component is the distance that the node may move from there [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     anchors: IndexVec<BodySlot, IndexVec<NodeId, Row>>,
-    /// Distance that each node may still move before one of them may exceed its allowed distance [m].
+    /// Distance that every node can still move without exceeding its allowed distance in `anchors` [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     spare: f32,
-    /// Allowed and actual movement of each rigid body [m]; empty if a full search is due.
+    /// Allowed and actual movement of each rigid body since the last full search [m]; empty if a full search
+    /// is due.
     #[cfg_attr(feature = "serde", serde(skip))]
     leeways: Vec<Leeway>,
     /// Nodes removed, added or woken since the last update.
@@ -91,10 +94,12 @@ fn serialize_known<S: serde::Serializer>(list: &[NodePair], to: S) -> Result<S::
     serde::Serialize::serialize(&known.collect::<Vec<_>>(), to)
 }
 
-/// Allowed (`most`) and actual (`come`) movement of a rigid body since the last full search [m].
+/// Allowed and actual movement of a rigid body since the last full search.
 #[derive(Copy, Clone, Debug)]
 struct Leeway {
+    /// Distance that the rigid body may move before a full search is due [m].
     most: f32,
+    /// Upper bound of the distance that the rigid body has moved since the last full search [m].
     come: f32,
 }
 
@@ -124,13 +129,13 @@ impl NodePairs {
         self.list.dedup_by_key(|pair| pair.key());
     }
 
-    /// Marks removed and added nodes of a body for the next search.
+    /// Marks nodes that a tear of a body removed or added, so that their pairs are searched again.
     pub fn tear(&mut self, body: BodySlot, nodes: &[NodeId]) {
         self.changed.extend(nodes.iter().map(|&node| (body, node)));
     }
 
-    /// Marks the nodes of woken pieces for the next search, because they can touch fixed bodies again.
-    /// `pieces` holds body and piece number, ascending.
+    /// Marks the nodes of woken pieces, so that their pairs are searched again: only awake nodes are paired
+    /// with fixed bodies. `pieces` holds body slots and piece numbers in ascending order.
     pub fn wake<D: Dim>(&mut self, pieces: &[(BodySlot, PieceId)], bodies: &SoftBodies<D>) {
         for (slot, body) in bodies.by_slot() {
             if pieces.iter().all(|&(body, _)| body != slot) {
@@ -145,13 +150,14 @@ impl NodePairs {
         }
     }
 
-    /// Reduces the remaining margins after a substep in which no node moved farther than `distance` [m].
+    /// Subtracts the motion of a substep from the search margins. No node moved farther than `distance` [m]
+    /// in the substep.
     pub fn pass(&mut self, distance: f32) {
         self.travel += distance;
         self.spare -= distance;
     }
 
-    /// Updates the list. A substep takes `duration` [s], and `left` [s] of the tick remain.
+    /// Updates the list of pairs. A substep takes `duration` [s], and `left` [s] of the tick remain.
     pub fn follow<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
@@ -202,8 +208,8 @@ impl NodePairs {
         });
     }
 
-    /// Searches all nodes that may reach a rigid body in the remaining time `left` of the tick [s]. Sleeping
-    /// nodes are paired only with moving rigid bodies.
+    /// Searches all pairs of a node and a rigid body that may touch in the remaining time `left` of the tick
+    /// [s]. Sleeping nodes are paired only with moving rigid bodies.
     fn find_all<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies, left: f32) {
         self.changed.clear();
         self.travel = 0.0;
@@ -247,7 +253,7 @@ impl NodePairs {
                     };
                     near.extend(body.mesh().nodes().map(|(node, _)| node).filter(is_near));
                 }
-                // Sorts the nodes, which were found bin by bin.
+                // Sorts the nodes, because they were found bin by bin and `merge` requires ascending pairs.
                 near.sort_unstable();
                 found.extend(near.iter().map(|&node| (own, *slot, node)));
             }
@@ -255,8 +261,8 @@ impl NodePairs {
         self.merge(&found, |pair| pair.has_touched(bodies));
     }
 
-    /// Adds nodes that have exceeded their allowed distance to `changed`, and updates `spare` for the other
-    /// nodes.
+    /// Adds to `changed` the nodes that have exceeded their allowed distance in `anchors`, and updates
+    /// `spare` for the other nodes.
     fn find_strayed<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         let mut spare = f32::INFINITY;
         for (slot, body) in bodies.by_slot() {
@@ -281,7 +287,8 @@ impl NodePairs {
         self.spare = spare;
     }
 
-    /// Stores the position of a node and its allowed distance until the end of the tick.
+    /// Stores in `anchors` the position of a node and the distance that it may move in the remaining time
+    /// `left` of the tick [s].
     fn anchor<D: Dim>(&mut self, slot: BodySlot, node: NodeId, bodies: &SoftBodies<D>, left: f32) {
         let body = bodies.at(slot);
         let anchors = &mut self.anchors[slot];
@@ -338,7 +345,7 @@ impl NodePair {
         self.impulse.total > 0.0 && bodies.at(self.body).mesh().is_alive(self.node)
     }
 
-    /// Returns the piece of the node; `None` if another body is in the slot now.
+    /// Returns the piece of the node; `None` if the body or the node does not exist.
     pub fn piece<D: Dim>(&self, bodies: &SoftBodies<D>) -> Option<PieceId> {
         let body = bodies.find(self.body)?;
         let is_known = self.node.index() < body.mesh().node_capacity();
@@ -346,18 +353,18 @@ impl NodePair {
     }
 }
 
-/// Awake nodes of a body, grouped in bins. A rigid shape is tested against each bin as a whole: most bins are
-/// out of its reach, even in a body torn into many pieces.
+/// Awake nodes of a body, grouped in bins. A rigid shape is first tested against each bin as a whole: most
+/// bins are too far away, even in a body torn into many pieces.
 struct Squares {
-    /// Nodes by their numbers in the bins, each with the distance from a shape within which it is paired with
-    /// the shape [m].
+    /// Awake nodes, indexed by the point numbers of `bins`. The second entry is the distance from a resting
+    /// shape within which the node is paired with the shape [m].
     nodes: Vec<(NodeId, f32)>,
     bins: Bins,
     list: Vec<Square>,
 }
 
-/// Nodes of one bin: their index range, a ball around them, and the largest distance at which one of them is
-/// paired with a shape [m].
+/// Nodes of one bin: their index range in the bin order, a ball around them, and the largest distance at
+/// which one of them is paired with a resting shape [m].
 struct Square {
     points: Range<usize>,
     centre: Row,
@@ -380,7 +387,8 @@ impl Squares {
         }
     }
 
-    /// Adds the nodes that are no farther from a shape than their own reach plus `range` [m].
+    /// Adds to `near` the nodes that are within `range` [m] of a shape, plus the distance stored for each of
+    /// them in `nodes`.
     fn within(&self, range: f32, shape: &Solid, near: &mut Vec<NodeId>) {
         let is_near = |at: Row, reach: f32| shape.distance(at.xyz()).0 <= reach;
         for square in &self.list {

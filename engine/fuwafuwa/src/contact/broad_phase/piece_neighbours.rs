@@ -1,5 +1,5 @@
 //! Neighbours: spheres of the same piece that are close at rest. The search for all pairs skips them, because
-//! either the piece itself keeps them apart, or they are on opposite crack faces, which are listed
+//! either elastic forces keep them apart, or they are on opposite crack faces, which are listed
 //! separately. The module also finds ranges in which all spheres sleep.
 
 use super::contact_sphere::{NEAR, SphereId};
@@ -72,7 +72,7 @@ impl Neighbours {
         }
     }
 
-    /// Returns the piece and voxel at an index.
+    /// Returns the piece and voxel of the sphere at index `at` of the columns.
     #[inline(always)]
     pub fn at(&self, at: usize) -> PieceSite {
         PieceSite {
@@ -98,8 +98,8 @@ impl Neighbours {
         if same == 0 {
             return 0;
         }
-        // Distance above the lower limit of a neighbour's coordinate. Below that limit it wraps around to a
-        // large value, which fails the test.
+        // Coordinates relative to `own − NEAR`, the lowest coordinate of a neighbour. Lower coordinates wrap
+        // around to large values, so that one comparison with 2 · NEAR tests both limits.
         let along = |axis: usize| {
             let column = u16x8::from_slice(simd, &self.voxels[axis][eight.clone()]);
             column - u16x8::splat(simd, own.voxel[axis].wrapping_sub(NEAR))

@@ -1,5 +1,5 @@
-//! Contact points between two rigid bodies, at least one of which is dynamic. The key of the touching corner
-//! or edge identifies a point from substep to substep.
+//! Contact points between two rigid bodies, at least one of which is dynamic. A point is recognised in the
+//! next substep by the key of the touching corner or edge crossing.
 
 use super::known_impulse::Impulse;
 use crate::foundation::arena::RigidSlot;
@@ -24,7 +24,7 @@ pub struct RigidTouch {
 
 hash_state! { struct RigidTouch { both, key, impulse } }
 
-/// Contact point that pressed in one substep, kept for the events of the tick.
+/// Contact point that had a normal impulse in one substep, kept for the events of the tick.
 #[derive(Copy, Clone, Debug)]
 pub struct Passed {
     /// Slots of the dynamic body and of the body that it touches.
@@ -45,7 +45,7 @@ pub struct Passed {
 pub struct RigidTouches {
     /// Points, ascending by bodies and key.
     pub list: Vec<RigidTouch>,
-    /// Contacts of the past substeps of this tick, for the events.
+    /// Contact points with a normal impulse in the past substeps of this tick, for its contact events.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub passed: Vec<Passed>,
 }
@@ -64,7 +64,7 @@ impl RigidTouches {
         self.passed.clear();
     }
 
-    /// Returns the impulses of a point in the last substep.
+    /// Returns the impulses of a contact point in the last substep; 0 if the point is new.
     pub fn known(&self, both: [RigidSlot; 2], key: u32) -> Impulse {
         let found = self
             .list

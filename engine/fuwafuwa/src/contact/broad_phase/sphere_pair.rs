@@ -6,9 +6,10 @@ use crate::foundation::hash::hash_state;
 use crate::foundation::ids::IndexVec;
 use crate::foundation::threads::{self, CHUNK_SIZE};
 
-/// Search margin of contacts [voxels]. A pair is found before its spheres touch if the gap shrinks by at most
-/// a sixth of a voxel in a substep: (0.3 − CLOSE) / AHEAD. This speed is a quarter of the wave speed. Faster
-/// spheres overlap first and are then pushed out.
+/// Search margin of contacts [voxels]: pairs are listed if their gap may become smaller than this. A contact
+/// becomes active before its sides touch if the gap shrinks by at most (MARGIN − CLOSE) / AHEAD = 1/6 voxel
+/// in a substep. This speed is a quarter of the wave speed. Faster spheres overlap first and are then pushed
+/// out.
 pub const MARGIN: f32 = 0.3;
 
 /// Pair of spheres that may touch.
@@ -19,15 +20,16 @@ pub struct SpherePair {
     pub spheres: [SphereId; 2],
     /// Impulses of the contact.
     pub impulse: Impulse,
-    /// Whether the spheres have met from outside. If so, and one sphere is now behind the surface of the
-    /// other, that sphere was forced there and is pushed back out.
+    /// Whether the spheres touched while neither was behind the surface of the other. If so, and one sphere
+    /// is behind the other's surface now, it was forced there and is pushed back out.
     pub met_in_front: bool,
 }
 
 hash_state! { struct SpherePair { spheres, impulse, met_in_front } }
 
-/// Replaces `list` by the `found` pairs and some old pairs: those of unchanged spheres, and those that
-/// touched in this tick, which its events report. Pairs that were listed before keep their impulses.
+/// Replaces `list` by the `found` pairs and some old pairs: those of two unchanged spheres, and those that
+/// touched in this tick, because the events of the tick report them. Pairs that were listed before keep their
+/// impulses.
 pub fn merge(
     list: &mut Vec<SpherePair>,
     found: &[Vec<[SphereId; 2]>],
@@ -61,7 +63,7 @@ pub fn merge(
     *list = merged.concat();
 }
 
-/// Replaces the sphere numbers by new ones, given for each old number.
+/// Replaces each sphere number `old` by `numbers[old]`. Removes pairs that contain a removed sphere.
 pub fn renumber(list: &mut Vec<SpherePair>, numbers: &IndexVec<SphereId, SphereId>) {
     list.retain_mut(|pair| {
         let number = |old: SphereId| numbers.get(old.index()).copied().unwrap_or(SphereId::NONE);
@@ -109,13 +111,12 @@ impl SpherePair {
         }
     }
 
-    /// Returns whether the pair must be stored: it has an impulse, or its spheres touched after having been
-    /// apart. Spheres that overlapped from the start need no entry.
+    /// Returns whether the pair must be stored in a file: it has an impulse, or `met_in_front` is set. A
+    /// search finds all other pairs again.
     pub fn is_known(&self) -> bool {
         self.impulse.is_known() || self.met_in_front
     }
 
-    /// Returns both spheres.
     pub fn both<'a>(
         &self,
         spheres: &'a IndexVec<SphereId, ContactSphere>,
@@ -124,7 +125,7 @@ impl SpherePair {
     }
 }
 
-/// Returns the pairs ascending by their first sphere; sphere numbers are below `count`.
+/// Returns the pairs in the order of their first spheres. All sphere numbers are below `count`.
 fn by_first(pairs: &[Vec<[SphereId; 2]>], count: usize) -> Vec<[SphereId; 2]> {
     let mut end: IndexVec<SphereId, u32> = vec![0; count].into();
     for pair in pairs.iter().flatten() {

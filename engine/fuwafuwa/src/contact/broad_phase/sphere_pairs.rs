@@ -1,10 +1,10 @@
 //! Pairs of contact spheres that may touch.
 //!
 //! Spheres are searched along their predicted motion: a straight *path*, from which a sphere may deviate by a
-//! slack. At higher speeds, the paths are valid for a shorter time. A sphere is searched again only if it
-//! exceeds its slack, wakes, or appears at the surface. Therefore no pair is missed at any finite speed. A
-//! full search skips neighbours within a piece; pairs of spheres on opposite crack faces are listed
-//! separately.
+//! slack. At higher speeds, the paths are valid for a shorter time. The pairs of a sphere are searched again
+//! only if the sphere exceeds its slack, wakes, falls asleep, or changes in a tear. Therefore no pair is
+//! missed at any finite speed. A full search skips neighbours within a piece; pairs of spheres on opposite
+//! crack faces are listed separately.
 //!
 //! ```text
 //!    ●──────────┤        two paths make a pair if their spheres, enlarged by their slack,
@@ -26,10 +26,11 @@ use crate::math::lanes::on_widest_lanes;
 use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
 
-/// At most 1 / `LONG_SHARE` of the spheres may have long paths. If more spheres are fast, all paths are ended
-/// sooner. Short paths are searched bin by bin; each long path searches its own surroundings.
+/// Divisor: at most 1 / `LONG_SHARE` of the spheres may have long paths. If more spheres are fast, the
+/// duration of all paths is shortened. Pairs of short paths are found bin by bin, while the surroundings of
+/// each long path are searched separately.
 const LONG_SHARE: usize = 32;
-/// Half the length of the longest short path, as a share of the search distance.
+/// Maximum for half the length of a short path, as a share of the search distance.
 const LONGEST_SHORT: f32 = 0.125;
 /// Maximum duration of the paths [s]. In this time, gravity takes a falling sphere 5 cm off its path.
 const LONGEST_TIME: f32 = 0.1;
@@ -51,8 +52,8 @@ const LOOKS: usize = CHUNK_SIZE / 8;
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpherePairs {
-    /// Pairs, ascending. Only pairs with an impulse or a meeting from outside are part of the hashed state:
-    /// the others depend on the last search.
+    /// Pairs, ascending. Only pairs with an impulse or with `met_in_front` are part of the hashed state:
+    /// which other pairs are listed depends on the last search.
     #[cfg_attr(feature = "serde", serde(serialize_with = "serialize_known"))]
     pub list: Vec<SpherePair>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -66,10 +67,11 @@ pub struct SpherePairs {
     /// Time of the midpoints of the paths in the bins, counted from the last full search [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     binned_at: f32,
-    /// Swept spheres in bin order.
+    /// Swept spheres, in the order of the points in `bins`.
     #[cfg_attr(feature = "serde", serde(skip))]
     binned: Vec<SweptSphere>,
-    /// Mean velocity of the moving spheres [m/s]. Paths are short or long relative to this motion.
+    /// Mean velocity of all spheres [m/s], or 0 if any sphere sleeps. Lengths of paths are measured relative
+    /// to this velocity.
     #[cfg_attr(feature = "serde", serde(skip))]
     frame: Row,
     /// Half the length of the longest short path [m].
@@ -90,16 +92,16 @@ pub struct SpherePairs {
     /// Time since the last full search [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     elapsed: f32,
-    /// Duration of the paths, counted from the last full search [s].
+    /// Time from the last full search to the end of all paths [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     duration: f32,
-    /// Search distance between two of the largest spheres [m].
+    /// Distance between the centres below which two of the largest spheres make a pair [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     reach: f32,
     /// Slack of the smallest spheres [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     least_stray: f32,
-    /// Distance that each sphere may still deviate before one of them may exceed its slack [m].
+    /// Distance that every sphere can still deviate from its path without exceeding its slack [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     spare: f32,
     /// Highest speed along any path [m/s].
@@ -153,14 +155,14 @@ impl SpherePairs {
         }
     }
 
-    /// Reduces the remaining margins after a substep of `duration` [s] in which no node moved farther than
-    /// `distance` [m].
+    /// Advances the time by a substep of `duration` [s], and subtracts from `spare` the largest possible
+    /// deviation from a path in this substep. No node moved farther than `distance` [m] in the substep.
     pub fn pass(&mut self, duration: f32, distance: f32) {
         self.elapsed += duration;
         self.spare -= distance + self.pace * duration;
     }
 
-    /// Updates the spheres and the list. Returns whether the list changed or a new tick began.
+    /// Updates the spheres and the list of pairs. Returns whether the list changed or a new tick began.
     pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &SoftBodies<D>) -> bool {
         let is_new_tick = std::mem::take(&mut self.is_new_tick);
         if spheres.awake.is_empty() {
@@ -317,8 +319,8 @@ impl SpherePairs {
         (self.paths[sphere].velocity - self.frame).length()
     }
 
-    /// Returns whether a sphere is found through the bins: its path is short and as it was when the bins were
-    /// built.
+    /// Returns whether a sphere is found through the bins: its path is short and has not changed since the bins
+    /// were built.
     #[inline(always)]
     fn is_binned(&self, traveller: &SweptSphere) -> bool {
         self.loose_at[traveller.sphere] == BINNED
@@ -415,8 +417,8 @@ impl SpherePairs {
         })
     }
 
-    /// Searches the pairs of the `changed` spheres again, which are given in ascending order. Pairs of two
-    /// unchanged spheres stay.
+    /// Searches again the pairs of the spheres `changed`, given in ascending order. Pairs of two unchanged
+    /// spheres stay.
     fn find_again<D: Dim>(
         &mut self,
         changed: &[SphereId],
@@ -481,7 +483,7 @@ impl SpherePairs {
             found
         });
         merge(&mut self.list, &found, &is_changed);
-        // Includes the slack of the new paths; `find_strayed` has computed `spare` for the other spheres.
+        // New paths begin with their full slack; `find_strayed` has computed `spare` for the old paths.
         self.spare = self.spare.min(self.least_stray);
     }
 

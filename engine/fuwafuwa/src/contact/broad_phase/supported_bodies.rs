@@ -1,6 +1,6 @@
-//! Finds sleeping pieces and rigid bodies that must wake because their support is removed or moved. They
-//! touch the support directly or through other sleepers. A quick motion of a touching object would wake them
-//! anyway, but a body that loses its support is slow at first.
+//! Finds the sleeping pieces and rigid bodies that rest on an object, directly or through other sleepers.
+//! They must wake when the object is removed or moved. Contacts alone would not wake them: a contact wakes a
+//! sleeper only if the touching object is fast, and bodies that lose their support are slow at first.
 
 use super::bins::Bins;
 use super::contact_sphere::ContactSphere;
@@ -20,7 +20,8 @@ use std::marker::PhantomData;
 /// Sleeping piece: body and piece number.
 pub type Sleeper = (BodySlot, PieceId);
 
-/// Returns the boxes around pieces of a body, enlarged by the contact margin [m].
+/// Returns the boxes [m] around those pieces of a body for which `is_one` is true, enlarged by the contact
+/// margin.
 pub fn bounds_of<D: Dim>(body: &SoftBody<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {
     let margin = Vec3::splat(MARGIN * body.grid().voxel_size());
     let pieces = body.piece_views().into_iter();
@@ -29,7 +30,7 @@ pub fn bounds_of<D: Dim>(body: &SoftBody<D>, is_one: impl Fn(PieceId) -> bool) -
     bounds.collect()
 }
 
-/// Returns the sleeping dynamic rigid bodies with a bounding box that overlaps one of `places`.
+/// Returns the sleeping dynamic rigid bodies with a bounding box that overlaps one of the boxes `places` [m].
 pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &RigidBodies) -> Vec<RigidSlot> {
     let is_there = |rigid: &RigidState| {
         let [low, high] = rigid.shape().bounds();
@@ -60,8 +61,9 @@ pub fn leaning_on_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) -> V
     Sleepers::of(bodies).with_those_on(leaning)
 }
 
-/// Returns the sleeping pieces in contact with a body that is not in `bodies`, directly or through other
-/// sleeping pieces. The result ascends by body and piece number.
+/// Returns the sleeping pieces in contact with a soft body, directly or through other sleeping pieces. If the
+/// body itself is in `bodies`, this includes its own sleeping pieces. The result ascends by body and piece
+/// number.
 pub fn leaning_on_body<D: Dim>(body: &SoftBody<D>, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
     let mut leaning = BTreeSet::new();
@@ -99,7 +101,7 @@ struct Sleepers<D: Dim> {
     spheres: Vec<ContactSphere>,
     centres: Vec<Row>,
     bins: Bins,
-    /// Largest radius of these spheres [m].
+    /// Largest radius of the contact spheres [m].
     largest: f32,
     dim: PhantomData<D>,
 }
@@ -124,7 +126,8 @@ impl<D: Dim> Sleepers<D> {
         }
     }
 
-    /// Returns the sleeping pieces that touch a sphere, possibly repeated.
+    /// Returns the sleeping pieces that touch a ball at the position `at` [m] with a `radius` [m]. A piece
+    /// may occur several times.
     fn touching(&self, at: Row, radius: f32) -> Vec<Sleeper> {
         let (mut near, furthest) = (Vec::new(), reach(radius, self.largest));
         on_widest_lanes!(simd => self.bins.near::<D, _>(simd, at, furthest, |_| 0, &mut near));

@@ -4,12 +4,13 @@ use super::contact_sphere::SphereId;
 use super::sphere_pair::MARGIN;
 use crate::soft_body::element_forces::Row;
 
-/// Slack: distance by which a sphere may deviate from its path [voxels]. A larger value makes the lists
-/// longer, a smaller one searches more often.
+/// Slack: distance by which a sphere may deviate from its path before its pairs are searched again [voxels].
+/// A larger value makes the list of pairs longer; a smaller one makes searches more frequent.
 pub const SLACK: f32 = 0.35;
 
 /// Weight of a sphere's mean velocity along its last path in the predicted velocity; the present velocity has
-/// weight 1 − `AS_BEFORE`. The mean velocity predicts vibrating spheres better, because they return.
+/// weight 1 − `AS_BEFORE`. The mean velocity predicts vibrating spheres better, because they return to where
+/// they were.
 const AS_BEFORE: f32 = 0.8;
 
 /// Predicted straight path of a sphere, valid until its pairs are searched again.
@@ -45,7 +46,7 @@ impl Start {
     };
 
     /// Returns the predicted velocity of a sphere [m/s]. `self` is the start of the sphere's last path,
-    /// `here` its position [m] at the time `now` [s], and `velocity` its present velocity [m/s].
+    /// `here` the sphere's position [m] at the time `now` [s], and `velocity` its present velocity [m/s].
     pub fn expected(&self, here: Row, now: f32, velocity: Row) -> Row {
         let passed = now - self.time;
         if passed > 0.0 {
@@ -70,13 +71,15 @@ pub struct SweptSphere {
     pub path: Path,
     /// Upper bound of half the length of the path [m], relative to the mean velocity of all spheres.
     pub sweep: f32,
+    /// Radius of the sphere [m].
     pub radius: f32,
     pub sphere: SphereId,
     pub asleep: bool,
 }
 
 impl SweptSphere {
-    /// Returns whether two swept spheres come close within a time span.
+    /// Returns whether two swept spheres come close enough to make a pair within a time span. False if both
+    /// sleep.
     #[inline(always)]
     pub fn meets(&self, other: &Self, span: Span) -> bool {
         let closing = self.path.velocity - other.path.velocity;
@@ -84,7 +87,7 @@ impl SweptSphere {
         let apart = apart + closing * span.middle;
         let reach = widened(self.radius + other.radius);
         // Rejects most pairs: those too far apart to meet in any direction of motion. The comparison is false
-        // for NaN.
+        // for NaN, which rejects the pair.
         let furthest = reach + self.sweep + other.sweep;
         let is_near = apart.dot(apart) <= furthest * furthest;
         if !is_near || self.asleep && other.asleep {
@@ -98,8 +101,8 @@ impl SweptSphere {
     }
 }
 
-/// Returns the distance below which two paths make a pair [m], for spheres that touch at the distance
-/// `touching` [m].
+/// Returns the distance of the centres below which two swept spheres make a pair [m]. The spheres touch at
+/// the distance `touching` [m] of their centres.
 #[inline(always)]
 pub fn widened(touching: f32) -> f32 {
     (1.0 + MARGIN + 2.0 * SLACK) * touching

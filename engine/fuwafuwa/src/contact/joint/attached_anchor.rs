@@ -15,7 +15,7 @@ use crate::rigid_body::solid::flat;
 use crate::soft_body::{SoftBodies, SoftBody};
 use glam::Vec3;
 
-/// Anchor of a joint.
+/// Anchor of a joint, attached to a body or fixed in the world.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum AttachedAnchor {
@@ -24,7 +24,8 @@ pub enum AttachedAnchor {
     /// Point of a rigid body in local coordinates [m].
     RigidBody(RigidBodyHandle, Vec3),
     /// Voxel corners of a soft body, each given by a voxel and the lattice point of the corner. The anchor is
-    /// at the mean of the nodes there. If the body tears at a corner, the anchor stays on the voxel's side.
+    /// at the mean position of the nodes at these corners. If the body tears at a corner, the anchor stays
+    /// with the given voxel.
     Soft(SoftBodyHandle, Vec<(Point, Point)>),
 }
 
@@ -37,13 +38,13 @@ pub struct AnchorState {
     pub at: Vec3,
     /// Velocity [m/s].
     pub velocity: Vec3,
-    /// Inverse effective mass matrix, by rows [1/kg].
+    /// Inverse effective mass matrix, by rows [1/kg]: velocity change of the anchor per impulse.
     pub yields: [Vec3; 3],
     pub is_asleep: bool,
 }
 
 impl AttachedAnchor {
-    /// Attaches an anchor at its attachment point.
+    /// Returns the anchor for the attachment point `end`, with the bodies at their present positions.
     pub fn of<D: Dim>(
         end: &JointEnd,
         bodies: &SoftBodies<D>,
@@ -72,8 +73,8 @@ impl AttachedAnchor {
         matches!(self, Self::Soft(..))
     }
 
-    /// Moves an anchor of a rigid body or of the world to a world-space point [m]; does nothing to an anchor
-    /// of a soft body.
+    /// Moves an anchor on a rigid body or in the world to a world-space point [m]. Does nothing to an anchor
+    /// on a soft body.
     pub fn stand_at(&mut self, at: Vec3, rigids: &RigidBodies) {
         match self {
             Self::Position(place) => *place = at,
@@ -136,7 +137,7 @@ impl AttachedAnchor {
         }
     }
 
-    /// Applies an impulse [N s].
+    /// Applies an impulse [N s] to the body at the anchor.
     pub fn push<D: Dim>(
         &self,
         bodies: &mut SoftBodies<D>,
@@ -165,7 +166,7 @@ impl AttachedAnchor {
         }
     }
 
-    /// Adds the attached bodies or pieces to the sleepers to wake.
+    /// Adds to `woken` the rigid body, or the pieces of the soft body, that the anchor is attached to.
     pub fn wake<D: Dim>(&self, bodies: &SoftBodies<D>, woken: &mut Woken) {
         match self {
             Self::Position(_) => {}
@@ -180,7 +181,8 @@ impl AttachedAnchor {
         }
     }
 
-    /// Returns whether an anchor that was read from a file is valid.
+    /// Returns whether an anchor that was read from a file is valid and belongs to the attachment point
+    /// `end`.
     #[cfg(feature = "serde")]
     pub fn is_sound<D: Dim>(&self, end: &JointEnd) -> bool {
         let is_of_it = match (self, end) {
@@ -223,8 +225,8 @@ fn nodes<'a, D: Dim>(
     })
 }
 
-/// Returns the voxel corners of a body within `radius` [m] of a point, or the nearest corner if none is that
-/// near.
+/// Returns the voxel corners of a body with a node within `radius` [m] of a point, or the corner with the
+/// nearest node if there is none.
 fn corners_near<D: Dim>(body: &SoftBody<D>, at: Vec3, radius: f32) -> Vec<(Point, Point)> {
     let distance = |node: NodeId| {
         let apart = body.positions()[node].xyz() - at;

@@ -23,7 +23,8 @@ pub enum JointEnd {
 
 hash_state! { enum JointEnd { Position(at), RigidBody { rigid, at }, Soft { body, at, radius } } }
 
-/// Sleeping pieces and rigid bodies to wake, because their joint is strained or its other anchor moves.
+/// Sleeping pieces and rigid bodies to wake, because one of their joints is strained or the joint's other
+/// anchor moves.
 #[derive(Debug, Default)]
 pub(crate) struct Woken {
     pub(crate) pieces: Vec<(BodySlot, PieceId)>,

@@ -10,23 +10,23 @@ use crate::rigid_body::RigidBodies;
 use crate::soft_body::SoftBodies;
 use glam::Vec3;
 
-/// Warm-starting factor of pins and springs, equal to that of contacts. With other values, chains of pins
-/// with a heavy end swing more.
+/// Warm-starting factor of pins and springs, equal to that of contacts. With other values, a heavy body at
+/// the end of a chain of pins swings more.
 const WARM_START: f32 = 0.9;
 /// Share of the position error of pins and ropes that is corrected per substep, equal to the share of an
 /// overlap that contacts resolve. Twice this value is unstable.
 const DRAW: f32 = 0.2;
 /// Maximum speed at which a position error is corrected [m/s].
 const DRAW_SPEED: f32 = 2.0;
-/// Length by which a pin or rope must be stretched to wake a sleeper [m]. Smaller changes are not visible.
+/// Length by which a pin or rope must be stretched to wake a sleeper [m]. Smaller stretches are not visible.
 const WAKE_STRETCH: f32 = 0.002;
-/// Share by which the force of a spring must change to wake a sleeper, in addition to the force of an
-/// elongation by [`WAKE_STRETCH`].
+/// Relative change of a spring's force that wakes a sleeper. The force must change by this share plus the
+/// stiffness times [`WAKE_STRETCH`].
 const WAKE_SHARE: f32 = 0.02;
 
 impl JointState {
-    /// Begins a substep: lists sleepers to wake and applies the warm-start impulse. Returns false if an
-    /// anchor no longer exists.
+    /// Begins a substep: adds the sleepers to wake to `woken`, and applies the warm-start impulse. Returns
+    /// false if an anchor no longer exists.
     pub(super) fn start<D: Dim>(
         &mut self,
         bodies: &mut SoftBodies<D>,
@@ -54,7 +54,7 @@ impl JointState {
         true
     }
 
-    /// Returns whether the joint must wake its sleepers when its anchors are at a `distance` [m].
+    /// Returns whether the joint must wake sleeping bodies if the distance of its anchors is `distance` [m].
     fn is_strained(&self, distance: f32) -> bool {
         match self.kind {
             JointKind::Pin => distance > WAKE_STRETCH,
@@ -91,8 +91,8 @@ impl JointState {
                 };
                 solved::<D>(&yields, -(relative + draw))
             }
-            // If `draws` is false, this pass removes the velocity of position corrections. A spring has made
-            // no position correction.
+            // If `draws` is false, this pass removes the velocity of position corrections. Springs make no
+            // position corrections.
             JointKind::Spring { .. } if !draws => Vec3::ZERO,
             JointKind::Spring {
                 stiffness,
@@ -164,7 +164,7 @@ impl JointState {
         way * ((pulled + change).min(0.0) - pulled)
     }
 
-    /// Returns whether at least one attached body can move.
+    /// Returns whether at least one of the two anchors can move.
     pub(super) fn yields<D: Dim>(&self, bodies: &SoftBodies<D>, rigids: &RigidBodies) -> bool {
         let grips = self.grips(bodies, rigids).into_iter().flatten();
         let mut ways = grips.flat_map(|grip| grip.yields);
@@ -187,7 +187,7 @@ impl JointState {
     }
 }
 
-/// Returns the velocity at which a pin corrects its position error [m/s].
+/// Returns the velocity at which a pin corrects the position error `apart` [m/s].
 fn drawn(apart: Vec3, duration: f32) -> Vec3 {
     let draw = apart * (DRAW / duration);
     let speed = draw.length();
@@ -208,8 +208,8 @@ fn along(yields: &[Vec3; 3], way: Vec3) -> f32 {
     way.dot(yields.map(|row| row.dot(way)).into())
 }
 
-/// Returns the impulse that changes the relative velocity of the anchors by `velocity`; 0 if neither anchor
-/// can move.
+/// Returns the impulse [N s] that changes the relative velocity of the anchors by `velocity` [m/s]; 0 if
+/// neither anchor can move.
 fn solved<D: Dim>(yields: &[Vec3; 3], velocity: Vec3) -> Vec3 {
     let [x, y, mut z] = *yields;
     // In 2D the third row of the matrix is 0; a unit row makes the matrix invertible.
@@ -220,7 +220,7 @@ fn solved<D: Dim>(yields: &[Vec3; 3], velocity: Vec3) -> Vec3 {
     if under <= 0.0 {
         return Vec3::ZERO;
     }
-    // Columns of the inverse of a symmetric matrix.
+    // Columns of the inverse matrix, times the determinant `under`.
     let columns = [y.cross(z), z.cross(x), x.cross(y)];
     let sum = (0..D::N).fold(Vec3::ZERO, |sum, axis| sum + columns[axis] * velocity[axis]);
     sum * (1.0 / under)

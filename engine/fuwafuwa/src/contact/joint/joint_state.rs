@@ -12,8 +12,8 @@ use crate::rigid_body::{FARTHEST, RigidBodies, is_within_reach};
 use crate::soft_body::SoftBodies;
 use glam::Vec3;
 
-/// Solver iterations over all joints per substep. Chains need more than one, because their links depend on
-/// each other.
+/// Solver iterations over all joints per substep. Chains of joints need more than one iteration, because
+/// their links depend on each other.
 const ROUNDS: usize = 4;
 
 /// Joints of a world.
@@ -23,7 +23,7 @@ pub type Joints = Arena<JointHandle, JointState>;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct JointState {
-    /// Attachment points of both anchors.
+    /// Attachment points as they were when the joint was added.
     pub anchors: [JointEnd; 2],
     /// Joint kind.
     pub kind: JointKind,
@@ -113,8 +113,8 @@ impl JointState {
         Ok(())
     }
 
-    /// If a pin connects a soft body to a rigid body or to the world, moves the anchor of the latter to the
-    /// soft body's anchor. So nothing jumps at the first step.
+    /// For a pin between a soft body and a rigid body or the world: moves the anchor that is not on the soft
+    /// body to the other anchor. So nothing jumps at the first step.
     fn meet_soft_ends<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
         let is_soft = self.attached.each_ref().map(AttachedAnchor::is_soft);
         for (own, other) in [(0, 1), (1, 0)] {
@@ -194,7 +194,7 @@ impl JointState {
         }
     }
 
-    /// Returns whether a joint that was read from a file is valid.
+    /// Returns whether a joint that was read from a file has valid values.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound<D: Dim>(&self) -> bool {
         let is_finite = self.impulse.is_finite() && self.force >= 0.0;

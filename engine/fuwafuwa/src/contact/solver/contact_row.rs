@@ -15,24 +15,29 @@ pub const PUSH_OUT_SPEED: f32 = 0.5;
 
 /// Gap below which a contact is active [voxels], now or within `AHEAD` substeps at the present speed.
 pub const CLOSE: f32 = 0.05;
-/// Number of substeps after which the gap is predicted to find active contacts. The extra half substep allows
-/// for other contacts that make the gap close faster.
+/// Number of substeps for which the gap is extrapolated to decide whether a contact is active. The extra half
+/// substep allows for other contacts that make the gap close faster.
 pub const AHEAD: f32 = 1.5;
 
 /// Contact in one substep.
 #[derive(Copy, Clone, Debug)]
 pub struct Contact {
+    /// Unit normal from the second side to the first.
     pub normal: Row,
-    /// Distance of the two sides [m], negative if they overlap.
+    /// Distance of the two sides along the normal [m], negative if they overlap.
     pub gap: f32,
-    /// Lower limit of the normal velocity [m/s]; negative values allow an approach.
+    /// Lower limit of the relative velocity along the normal, which the solver enforces [m/s]. A negative
+    /// value allows an approach.
     pub min_normal_velocity: f32,
-    /// Effective mass [kg].
+    /// Effective mass along the normal [kg].
     pub inertia: f32,
+    /// Coulomb friction coefficient.
     pub friction: f32,
+    /// Accumulated impulse along the normal in this substep [N s], at least 0.
     pub normal_impulse: f32,
+    /// Accumulated friction impulse on the first side in this substep [N s].
     pub friction_impulse: Row,
-    /// Index of the pair of this contact in its list in the broad phase.
+    /// Index of the contact's pair in the list of the broad phase, `NodePairs::list` or `SpherePairs::list`.
     pub pair: u32,
 }
 
@@ -109,7 +114,8 @@ impl Contact {
         change
     }
 
-    /// Like [`Contact::solve`], along the normal only and without the push-out velocity.
+    /// Like [`Contact::solve`], but brings the relative velocity along the normal to 0 and leaves friction as
+    /// it is.
     #[inline(always)]
     pub fn relax<D: Dim>(&mut self, relative: Row) -> Row {
         let approach = inner::<D>(relative, self.normal);
@@ -142,8 +148,9 @@ impl Impulse {
     }
 }
 
-/// Returns whether a contact is active in this substep: the sides overlap or may do so within `AHEAD`
-/// substeps. A contact with a non-finite approach speed is inactive, so that the value cannot spread.
+/// Returns whether a contact is active in this substep: its gap is below `CLOSE` times `size` [m], or may
+/// become so within `AHEAD` substeps. A contact with a non-finite approach speed is inactive, so that the
+/// value cannot spread.
 pub fn is_close(gap: f32, approach: f32, size: f32, duration: f32) -> bool {
     approach.is_finite() && gap + AHEAD * duration * approach.min(0.0) < CLOSE * size
 }

@@ -1,4 +1,4 @@
-//! Contacts with the objects on their two sides.
+//! Contacts of each kind: a solver row and the two objects that it acts on.
 
 use super::contact_row::Contact;
 use crate::foundation::arena::RigidSlot;
@@ -15,7 +15,7 @@ id! {
 pub struct NodeContact {
     pub contact: Contact,
     pub node: NodeRow,
-    /// Rigid body, if it moves, and the lever arm from the position of that body to the node [m].
+    /// Rigid body, if it can move, and the lever arm from the body's position to the node [m].
     pub mover: Option<(RigidSlot, Vec3)>,
 }
 
@@ -26,7 +26,7 @@ pub struct SphereContact {
     pub grips: [SphereNodeRows; 2],
 }
 
-/// Rows of a sphere's corner nodes; only the first four in 2D.
+/// Velocity rows of a sphere's corner nodes; in 2D only the first four are used.
 pub type SphereNodeRows = [NodeRow; 8];
 
 /// Contact point between a dynamic and any other rigid body.
@@ -35,9 +35,9 @@ pub struct FreeContact {
     pub contact: Contact,
     /// Slots of the dynamic body and of the body that it touches.
     pub both: [RigidSlot; 2],
-    /// Lever arms of the point from the position of each body [m].
+    /// Lever arms from the position of each body to the contact point [m].
     pub levers: [Vec3; 2],
-    /// Tangential effective mass [kg]: a lower bound over all tangents.
+    /// Tangential effective mass [kg]: at most that of any tangent direction.
     pub across: f32,
     /// Position of the point [m].
     pub at: Vec3,
@@ -45,7 +45,7 @@ pub struct FreeContact {
     pub speed: f32,
     /// Separation speed after a bounce [m/s]; 0 without a bounce.
     pub bounce: f32,
-    /// Key of the touching corner or edge crossing.
+    /// Key of the touching corner or edge crossing: identifies the contact point in the next substep.
     pub key: u32,
 }
 

@@ -13,7 +13,7 @@ use crate::soft_body::element_forces::Row;
 #[derive(Copy, Clone, Debug)]
 pub struct EscapeContact {
     grips: [SphereNodeRows; 2],
-    /// Effective mass [kg].
+    /// Effective mass of the embedded sphere and its exit [kg].
     inertia: f32,
     /// Target velocity of the embedded sphere relative to its exit [m/s].
     velocity: Row,
@@ -31,7 +31,7 @@ impl EscapeContact {
     ) -> Option<Self> {
         let [a, b] = [captive.sphere, captive.exit];
         let both = [&spheres.list[a], &spheres.list[b]];
-        // At least 1e-9, because results divide by it.
+        // Length of a vector, at least 1e-9, because the code below divides by it.
         let length_of = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
         let out = both[1].outward::<D>(bodies.at(both[1].body).positions());
         let ahead = (both[0].radius + both[1].radius) / length_of(out);

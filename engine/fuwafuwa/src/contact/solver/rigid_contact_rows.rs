@@ -15,7 +15,8 @@ use glam::Vec3;
 /// this speed in a fall by 13 mm. Gravity adds a fiftieth of this speed in a substep.
 const BOUNCE_SPEED: f32 = 0.5;
 
-/// Finds the contacts of kinematic and coupled bodies with fixed bodies and with each other.
+/// Finds the contacts of kinematic and coupled bodies with fixed bodies and with each other. Replaces the
+/// contents of `found`.
 pub fn find_hands(rigids: &RigidBodies, duration: f32, found: &mut Vec<HandContact>) {
     found.clear();
     let hands = rigids
@@ -49,8 +50,8 @@ pub fn find_hands(rigids: &RigidBodies, duration: f32, found: &mut Vec<HandConta
     }
 }
 
-/// Finds the contacts of dynamic bodies with all rigid bodies. Returns the sleepers that were hit, possibly
-/// repeated.
+/// Finds the contacts of dynamic bodies with all rigid bodies, and replaces the contents of `found`. Returns
+/// the sleepers that must wake, possibly repeated.
 pub fn find_free<D: Dim>(
     rigids: &RigidBodies,
     known: &RigidTouches,
@@ -94,7 +95,8 @@ pub fn find_free<D: Dim>(
     hits
 }
 
-/// Returns the distance from a body within which a contact may become active in this substep [m].
+/// Returns the distance from a rigid body within which a contact with a body at rest may become active in
+/// this substep [m].
 fn margin(rigid: &RigidState, duration: f32) -> f32 {
     CLOSE * rigid.shape().inradius().min(1.0) + margin_of_other(rigid, duration)
 }
@@ -103,7 +105,8 @@ fn margin_of_other(rigid: &RigidState, duration: f32) -> f32 {
     AHEAD * duration * rigid.top_speed()
 }
 
-/// Finds the contacts between two bodies.
+/// Adds to `found` the active contact points of a dynamic body with another rigid body, and to `hits` the
+/// sleepers that must wake.
 fn touch<D: Dim>(
     slots: [RigidSlot; 2],
     both: [&RigidState; 2],
@@ -174,7 +177,7 @@ fn tangents<D: Dim>(normal: Vec3) -> [Vec3; 2] {
 }
 
 impl FreeContact {
-    /// Returns the impulse at the contact point, to be stored for the next substep.
+    /// Returns the impulse at the contact point, to be stored for the warm start in the next substep.
     pub fn touch(&self) -> RigidTouch {
         let mut impulse = Impulse::default();
         impulse.note(&self.contact);
@@ -208,7 +211,8 @@ impl FreeContact {
         self.push(rigids, change, duration);
     }
 
-    /// Removes, after the position update, the velocity that resolved an overlap, but keeps that of a bounce.
+    /// Removes the velocity by which an overlap was resolved, but keeps that of a bounce. Follows the
+    /// position update.
     pub fn relax<D: Dim>(&mut self, rigids: &mut RigidBodies, duration: f32) {
         if self.contact.was_pushed_out() {
             let kept = self.contact.normal * self.bounce;

@@ -10,20 +10,20 @@ use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
 use glam::Vec3;
 
-/// Number of nodes in a chunk. A chunk with any node in contact is copied as a whole. Larger chunks copy more
-/// unused nodes; smaller ones cost more tests.
+/// Number of nodes in a chunk of `Motion`. A chunk with any node in contact is copied as a whole. Larger
+/// chunks copy more unused nodes; smaller ones cost more tests.
 const STRETCH: usize = 16;
 
-/// Velocities of the nodes in contact [m/s], with the inverse mass [1/kg] as the fourth component, so that an
-/// impulse reads one row.
+/// Copy of the velocities of nodes in contact [m/s]. The fourth component is the inverse mass [1/kg], so that
+/// applying an impulse reads one row.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
-    /// Velocity and inverse mass of each node; valid only in chunks with a node in contact.
+    /// Velocity and inverse mass of each node. Valid only in chunks with a node in contact.
     rows: IndexVec<NodeRow, Row>,
     /// Row of the first node of each body, always at the start of a chunk.
     first: IndexVec<BodySlot, NodeRow>,
-    /// Whether any node of a chunk is in contact. Other chunks, which are most chunks of a large body, are
-    /// not copied.
+    /// For each chunk, whether any of its nodes is in contact. All other chunks, which are most chunks of a
+    /// large body, are not copied.
     is_touched: Vec<bool>,
 }
 

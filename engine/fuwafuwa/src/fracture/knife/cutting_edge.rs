@@ -1,4 +1,5 @@
-//! Tracks a cutting edge through bodies: the position of each sample, and the area that the samples sweep.
+//! Follows a cutting edge through bodies: the rest position of each sample, and the area that the samples
+//! sweep.
 
 use super::edge_sample::{MOST_SAMPLES, Near, Sample};
 use super::knife_state::{EdgePose, KnifeState};
@@ -10,16 +11,18 @@ use crate::rigid_body::RigidState;
 use crate::soft_body::{SoftBodies, SoftBody};
 use glam::Vec3;
 
-/// Edge samples per width of the smallest voxel, so that no voxel slips between two samples, even at an
-/// oblique edge. With half a sample per voxel, the area and work of a cut are wrong by more than 10 %.
+/// Number of edge samples per width of the smallest voxel. With two, no voxel slips between adjacent samples,
+/// even at an oblique edge. With half a sample per voxel, the area and work of a cut are wrong by more than
+/// 10 %.
 const SAMPLES_PER_VOXEL: f32 = 2.0;
-/// Ratio of stretched length to rest length up to which the elements near a sample are found.
+/// Stretch up to which the search for elements near a sample finds all of them: present length divided by
+/// rest length.
 const STRETCH: f32 = 1.5;
-/// Factor in the maximum movement of a sample in rest coordinates between two sweeps: `MOST_STRETCH` times
-/// its movement in the world, plus `MOST_JUMP` voxels. A larger jump means that the sample entered other
-/// tissue, so it cuts nothing. The factor is twice [`STRETCH`].
+/// Factor in the limit of a sample's movement in rest coordinates between two sweeps. The limit is
+/// `MOST_STRETCH` times the movement in world space, plus `MOST_JUMP` voxels. A sample that moved farther has
+/// entered other tissue, so it cuts nothing in this sweep. The factor is twice [`STRETCH`].
 const MOST_STRETCH: f64 = 3.0;
-/// Constant term of the maximum movement in rest coordinates [voxels]: a tolerance of two voxels.
+/// Constant term in the limit of a sample's movement in rest coordinates [voxels], see [`MOST_STRETCH`].
 const MOST_JUMP: f64 = 2.0;
 
 /// Cut that an edge has made in one body since the last sweep.
@@ -33,8 +36,8 @@ pub struct Cut {
 }
 
 impl KnifeState {
-    /// Finds, for each sample of the edge, the body that contains the sample and the rest position there.
-    /// `ahead` is the time until elements near the samples are searched again [s].
+    /// Finds, for each sample of the edge, the body that contains the sample and the rest position in that
+    /// body. `ahead` is the time for which the lists of elements near the samples must suffice [s].
     pub(crate) fn follow<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
@@ -52,8 +55,8 @@ impl KnifeState {
         }
     }
 
-    /// Returns the cuts that the edge made in the last `since` seconds: one for each body that the edge is in
-    /// or has just left.
+    /// Ends a sweep: returns the cuts that the edge made in the last `since` seconds, one for each body that
+    /// the edge is in or has just left.
     pub(crate) fn pass<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
@@ -84,7 +87,7 @@ impl KnifeState {
         cuts
     }
 
-    /// Returns the length of edge that a sample represents [m].
+    /// Returns the part of the edge's length that a sample represents [m].
     pub(super) fn share<D: Dim>(&self, stance: &EdgePose, place: usize) -> f32 {
         let last = self.samples.len() - 1;
         // In 2D the edge is a point that cuts a sheet 1 m thick.
@@ -135,7 +138,7 @@ impl KnifeState {
         }
     }
 
-    /// Lists the elements that each sample may enter soon.
+    /// Lists, for each sample, the elements that it may enter within `ahead` seconds.
     fn look_around<D: Dim>(
         &mut self,
         stance: &EdgePose,
@@ -189,8 +192,9 @@ impl KnifeState {
         }
     }
 
-    /// Returns the body that contains a sample, and the rest position there. Tries the last position of the
-    /// sample, then the positions of adjacent samples, then nearby elements.
+    /// Returns the body that contains a sample, and the rest position of the sample there. Begins the search
+    /// at the last rest position of the sample, then at those of adjacent samples, then in the listed
+    /// elements nearby.
     fn find<D: Dim>(
         &self,
         bodies: &SoftBodies<D>,
@@ -201,7 +205,7 @@ impl KnifeState {
             && let Ok(body) = bodies.get(id)
         {
             // In an element that is pressed flat, the search finds no point. The sample then keeps its last
-            // position.
+            // rest position if that is still near.
             let found = Spot::find(body, at, spot.voxel);
             if let Some(spot) = found.or(Some(spot).filter(|spot| spot.is_near(body, at))) {
                 return Some((id, spot));
@@ -281,7 +285,7 @@ impl KnifeState {
         let all = 0..rows.len();
         let mut within: Vec<usize> = all.clone().filter(|&place| is_inside(place)).collect();
         if within.is_empty() {
-            // If the edge has just left the body, uses all samples with a path through it.
+            // If the edge has just left the body, uses all samples with a path through the body.
             within = all.filter(|&place| rows[place].is_some()).collect();
         }
         let middle = within.get(within.len() / 2).copied().unwrap_or(0);
@@ -327,7 +331,7 @@ impl KnifeState {
         let travel = (at - sample.before).length() + tissue.length();
         let reach = f64::from(travel / size);
         let is_jump = way.length() > MOST_STRETCH * reach + MOST_JUMP;
-        // A sample that moves backwards through its own cut opens no faces.
+        // A sample that moves backwards, through its own cut, opens no faces.
         let forth = way.dot(toward) / toward.length().max(1e-9);
         let is_drawn_back = forth < 0.0 && 2.0 * forth * forth > way.dot(way);
         match is_jump || is_drawn_back {

@@ -1,4 +1,4 @@
-//! Solver rows between a cutting edge and the tissue that it is in.
+//! Solver rows between a cutting edge and the tissue around it.
 
 use super::knife_state::{EdgePose, KnifeState};
 use crate::foundation::arena::{BodySlot, SoftBodyHandle};
@@ -14,22 +14,22 @@ use glam::Vec3;
 /// nodes. With 2 iterations, the two sides of a cut stay connected.
 const ROUNDS: usize = 8;
 
-/// Share of its limit from which on the impulse of a row counts as having reached the limit; below 1 to allow
-/// for rounding.
+/// Share of the limit impulse at which a row counts as having reached its limit, so that the edge advances.
+/// It is below 1 to allow for rounding.
 const AT_LIMIT: f32 = 0.98;
 
-/// Solver row of one sample.
+/// Solver row between one sample of the edge and the tissue around the sample.
 struct EdgeRow {
     body: SoftBodyHandle,
     /// Nodes of the element around the sample, with their interpolation weights.
     weights: Vec<(NodeId, f32)>,
-    /// Inverse effective mass of the tissue [1/kg].
+    /// Inverse effective mass of the tissue at the sample [1/kg].
     gain: f32,
-    /// Lever arm from the position of the holder [m].
+    /// Lever arm from the position of the holder to the sample [m].
     lever: Vec3,
-    /// Limits of the impulse in the substep, in the cutting direction and sideways [N s].
+    /// Maximum impulses in the substep: in the cutting direction, and sideways in both senses [N s].
     limits: [f32; 2],
-    /// Impulses in the cutting direction and sideways [N s].
+    /// Impulses on the tissue in this substep: in the cutting direction, and sideways [N s].
     impulse: [f32; 2],
 }
 
@@ -85,7 +85,7 @@ impl KnifeState {
         woken
     }
 
-    /// Returns the pieces that the edge is in. They stay awake while the edge moves.
+    /// Returns the pieces that contain samples of the edge. They stay awake while the edge moves.
     pub(crate) fn held<D: Dim>(&self, bodies: &SoftBodies<D>) -> Vec<(BodySlot, PieceId)> {
         let inside = self.samples.iter().filter_map(|sample| sample.inside);
         let pieces = inside.filter_map(|(id, spot)| {
@@ -130,7 +130,8 @@ impl KnifeState {
             gain: gains.sum(),
             weights,
             lever: self.lever(stance, place),
-            // A sample of zero length in unbreakable material gives 0 · ∞ = NaN, which `max` turns into 0.
+            // A sample that represents no length, in unbreakable material, gives 0 · ∞ = NaN, which `max`
+            // turns into 0.
             limits: [forth, material.strength * self.height].map(|k| (share * k).max(0.0)),
             impulse: [0.0; 2],
         }
@@ -146,12 +147,12 @@ impl KnifeState {
     }
 }
 
-/// Returns the velocity of the edge relative to the tissue [m/s].
+/// Returns the velocity of the edge relative to the tissue, at a sample [m/s].
 fn slip<D: Dim>(row: &EdgeRow, body: &SoftBody<D>, holder: &RigidState) -> Vec3 {
     holder.velocity_at(row.lever) - body.velocity_of(&row.weights)
 }
 
-/// Applies the impulse that removes the slip, within the limits of the row.
+/// Applies the impulse that stops the edge relative to the tissue, within the limits of the row.
 fn solve_row<D: Dim>(
     row: &mut EdgeRow,
     body: &mut SoftBody<D>,
@@ -160,7 +161,7 @@ fn solve_row<D: Dim>(
     duration: f32,
 ) {
     for (way, direction) in ways.into_iter().enumerate() {
-        // If neither side can move, the division by 0 drives the impulse to its limit.
+        // If neither the tissue nor the holder can move, the division by 0 drives the impulse to its limit.
         let yields = row.gain + holder.yields(row.lever, direction);
         let speed = slip(row, body, holder).dot(direction);
         let least = if way == 0 { 0.0 } else { -row.limits[way] };

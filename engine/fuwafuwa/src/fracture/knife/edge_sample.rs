@@ -7,18 +7,18 @@ use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
 use glam::Vec3;
 
-/// Maximum number of intervals between the samples of an edge. It suffices for an edge 256 voxels long, a
-/// quarter of the width of the largest grid.
+/// Maximum number of intervals between adjacent samples of an edge. With two samples per voxel, it suffices
+/// for an edge 256 voxels long, a quarter of the width of the largest grid.
 pub const MOST_SAMPLES: usize = 512;
 
-/// Element that a sample may enter.
+/// Element that a sample may enter before the next search.
 #[derive(Copy, Clone, Debug)]
 pub struct Near {
     pub body: SoftBodyHandle,
     pub voxel: Point,
-    /// Node of the element.
+    /// First corner node of the element.
     pub node: NodeId,
-    /// Distance from that node within which the element may contain the sample [m].
+    /// Distance from `node` within which the element may contain the sample [m].
     pub reach: f32,
 }
 
@@ -28,10 +28,10 @@ pub struct Near {
 pub struct Sample {
     /// Body that contains the sample, and the rest position of the sample there.
     pub inside: Option<(SoftBodyHandle, Spot)>,
-    /// Body and rest position of the sample at the end of the last sweep: the swept area up to there is
-    /// already counted. Stays unchanged while tissue holds the sample.
+    /// Body and rest position up to which the area swept by the sample is already counted. Stays unchanged
+    /// while tissue holds the sample.
     pub passed: Option<(SoftBodyHandle, Spot)>,
-    /// World-space position at the last sweep [m].
+    /// World-space position of the sample when `passed` last changed [m].
     pub before: Vec3,
     /// Whether the sample has advanced through tissue since the last sweep.
     pub slid: bool,
@@ -42,7 +42,7 @@ pub struct Sample {
 hash_state! { struct Sample { inside, passed, before, slid, cut } }
 
 impl Sample {
-    /// Returns the rest position of the sample in `body` at the last sweep.
+    /// Returns the rest position in `body` up to which the area swept by the sample is already counted.
     pub fn passed_in(&self, body: SoftBodyHandle) -> Option<Spot> {
         let passed = self.passed.filter(|(own, _)| *own == body);
         passed.map(|(_, spot)| spot)

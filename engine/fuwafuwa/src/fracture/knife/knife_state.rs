@@ -25,7 +25,7 @@ pub struct KnifeState {
     pub radius: f32,
     pub height: f32,
     pub(super) samples: Vec<Sample>,
-    /// Elements near each sample.
+    /// For each sample, the elements that it may enter soon.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) near: Vec<Vec<Near>>,
     /// Whether the lists in `near` are up to date.
@@ -35,9 +35,9 @@ pub struct KnifeState {
     pub(super) force: Vec3,
     /// Torque of the tissue on the knife in the last substep [N m], about the position of the holder.
     pub(super) torque: Vec3,
-    /// Area cut since the last event [m²].
+    /// Area cut since the last cut event of the knife [m²].
     pub(super) area: f64,
-    /// Work done since the last event [J].
+    /// Work of the edge on the tissue since the last cut event of the knife [J].
     pub(super) work: f64,
 }
 
@@ -50,7 +50,7 @@ hash_state! {
 impl<D: Dim> From<&Knife<D>> for KnifeState {
     fn from(knife: &Knife<D>) -> Self {
         let [from, to] = knife.edge.map(D::Vector::to_vec3);
-        // In 2D the edge is the point between its ends.
+        // In 2D the edge is a single point, the midpoint of the given ends.
         let edge = match D::N {
             2 => [(from + to) * 0.5; 2],
             _ => [from, to],
@@ -103,12 +103,12 @@ impl KnifeState {
         self.torque
     }
 
-    /// Returns and resets the area cut [m²] and the work done [J] since the last event.
+    /// Returns and resets the area cut [m²] and the work done [J] since the last cut event.
     pub(crate) fn take_sums(&mut self) -> [f32; 2] {
         [&mut self.area, &mut self.work].map(|sum| std::mem::take(sum) as f32)
     }
 
-    /// Clears the runtime state: the knife is in no body.
+    /// Resets everything except the definition: the knife is then in no body.
     pub(crate) fn forget(&mut self) {
         *self = Self {
             radius: self.radius,
@@ -132,7 +132,7 @@ impl KnifeState {
         let are_near = self.edge.iter().all(is_near);
         require(are_near, "edge", "within 1e6 m of its holder", self.edge)?;
         let along = to - from;
-        // In 2D the edge is a point.
+        // In 2D the edge is a point, which has no length.
         let has_length = D::N == 2 || along.length() > 0.0;
         require(has_length, "edge", "longer than 0", self.edge)?;
         let toward = flat::<D>(self.toward);
@@ -165,11 +165,11 @@ impl KnifeState {
             && self.samples.iter().all(Sample::is_sound)
     }
 
-    /// Returns the edge and its directions in world coordinates.
+    /// Returns the pose of the edge in world space, given the rigid body that holds the knife.
     pub(super) fn stance<D: Dim>(&self, holder: &RigidState) -> EdgePose {
         let turn = |vector: Vec3| holder.rotation().apply(vector);
         let levers = self.edge.map(|end| flat::<D>(turn(end)));
-        // In 2D the edge is a point that stands for an edge along the third axis.
+        // In 2D the edge is a point. It stands for an edge along the third axis.
         let along = match D::N {
             2 => Vec3::Z,
             _ => direction(levers[1] - levers[0]),
@@ -193,8 +193,11 @@ pub(super) struct EdgePose {
     pub(super) position: Vec3,
     /// Ends of the edge relative to the position of the holder [m].
     pub(super) levers: [Vec3; 2],
+    /// Unit vector along the edge, from its first end to its second.
     pub(super) along: Vec3,
+    /// Unit vector of the cutting direction, at a right angle to the edge.
     pub(super) toward: Vec3,
+    /// Unit normal of the flat of the blade: `along` × `toward`.
     pub(super) across: Vec3,
 }
 

@@ -7,17 +7,17 @@ use crate::soft_body::SoftBody;
 use crate::topology::mesh::Element;
 use glam::Vec3;
 
-/// Maximum number of elements visited from the starting voxel.
+/// Maximum number of elements that [`Spot::find`] visits.
 const STEPS: usize = 6;
-/// Distance outside of a cell [voxels] up to which a point counts as inside. Neighbouring elements deform
-/// differently, so without this tolerance a point between two cells could be outside of both.
+/// Distance outside of an element's cell up to which a point counts as inside [voxels]. Neighbouring elements
+/// deform differently, so without this tolerance a point between two cells could be outside of both.
 const LITTLE: f32 = 0.25;
 
 /// Point that moves with the material of a body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spot {
-    /// Voxel that contains the point.
+    /// Voxel that contains the point in the undeformed body.
     pub voxel: Point,
     /// Rest position [voxels].
     pub at: Vec3,
@@ -26,8 +26,9 @@ pub struct Spot {
 hash_state! { struct Spot { voxel, at } }
 
 impl Spot {
-    /// Finds the material point at a world-space position [m], starting from a voxel. Returns `None` if the
-    /// position is not in the body or too far from the start.
+    /// Finds the material point at a world-space position [m]. Begins in the voxel `from` and walks from
+    /// element to element. Returns `None` if the position is not in the body, or more than `STEPS` elements
+    /// away from the start.
     pub fn find<D: Dim>(body: &SoftBody<D>, at: Vec3, from: Point) -> Option<Self> {
         let mesh = body.mesh();
         let mut voxel = from;
@@ -65,8 +66,8 @@ impl Spot {
         Some(body.velocity_of(&body.weights(element, self.at)))
     }
 
-    /// Maps world-space directions to the undeformed body, in units of voxels: in an undeformed element, a
-    /// direction of length 1 keeps length 1 and is then one voxel long.
+    /// Maps world-space directions to rest coordinates: undoes the rotation and strain of the element at this
+    /// point. A direction of length 1 has length 1 [voxels] after this if the element is unstrained.
     pub fn directions<D: Dim, const COUNT: usize>(
         &self,
         body: &SoftBody<D>,
@@ -76,7 +77,7 @@ impl Spot {
         Some(ways.map(undo))
     }
 
-    /// Returns whether the point is within half a voxel of a world-space point [m].
+    /// Returns whether this material point is within half a voxel of a world-space position [m].
     pub fn is_near<D: Dim>(&self, body: &SoftBody<D>, at: Vec3) -> bool {
         let element = body.mesh().element_at(self.voxel);
         let half = 0.5 * body.grid().voxel_size();
@@ -84,8 +85,8 @@ impl Spot {
     }
 
     /// Returns whether the material in front of an edge is uncut: whether the next face that the edge would
-    /// open is still closed. `along` is the direction of the edge and `toward` the cutting direction
-    /// [voxels].
+    /// open is still closed. `along` and `toward` are the direction of the edge and the cutting direction, in
+    /// rest coordinates [voxels].
     pub fn is_whole_ahead<D: Dim>(&self, body: &SoftBody<D>, along: Vec3, toward: Vec3) -> bool {
         let ahead = self.at + toward * 0.5;
         let Some(voxel) = voxel_of::<D>(ahead).filter(|&at| body.grid().is_solid(at)) else {
@@ -94,7 +95,8 @@ impl Spot {
         let normal = along.cross(toward);
         let steepest = |a: &usize, b: &usize| normal[*a].abs().total_cmp(&normal[*b].abs());
         let axis = (0..D::N).max_by(steepest).unwrap_or(0);
-        // Signed distance from the middle of the voxel to the swept plane, along the axis.
+        // Signed distance from the centre of the voxel to the plane that the edge sweeps, times the length of
+        // `normal`. Divided by `normal[axis]`, it is the distance along the axis [voxels].
         let apart: f32 = (0..D::N)
             .map(|k| normal[k] * (ahead[k] - voxel[k] as f32 - 0.5))
             .sum();
@@ -118,7 +120,7 @@ fn is_closed<D: Dim>(body: &SoftBody<D>, voxel: Point, axis: usize) -> bool {
     body.connectivity().around(corner).is_closed(octant, axis)
 }
 
-/// Returns the voxel at a rest position; `None` far from any grid.
+/// Returns the voxel that contains a rest position; `None` beyond 1e6 voxels or if a coordinate is NaN.
 fn voxel_of<D: Dim>(at: Vec3) -> Option<Point> {
     let mut voxel = [0; 3];
     for axis in 0..D::N {
@@ -130,7 +132,8 @@ fn voxel_of<D: Dim>(at: Vec3) -> Option<Point> {
     Some(voxel)
 }
 
-/// Returns whether an element may contain a point [m]: a test with the enlarged box around its nodes.
+/// Returns whether an element may contain a world-space point [m]: whether the point is in the box around the
+/// element's nodes, enlarged by a margin.
 pub fn may_have<D: Dim>(body: &SoftBody<D>, element: &Element, at: Vec3) -> bool {
     let margin = LITTLE * body.grid().voxel_size() * element.cell.width() as f32;
     (0..D::N).all(|axis| {
@@ -143,7 +146,8 @@ pub fn may_have<D: Dim>(body: &SoftBody<D>, element: &Element, at: Vec3) -> bool
     })
 }
 
-/// Returns the distance of a rest position from the cell of an element [voxels].
+/// Returns the largest distance along an axis of a rest position from the cell of an element [voxels]; 0
+/// inside the cell.
 fn distance<D: Dim>(element: &Element, at: Vec3) -> f32 {
     let (low, width) = (element.cell.first_voxel(), element.cell.width() as f32);
     let out = |axis: usize| {

@@ -1,10 +1,10 @@
-//! Area that an edge sweeps through the rest lattice of a body, and the faces between voxels that this area
+//! Area that an edge sweeps in rest coordinates of a body, and the faces between voxels that this area
 //! crosses.
 //!
-//! The area crosses the face between two voxels if it crosses the line between their centres. For each axis,
-//! the lines through the voxel centres along that axis are tested, like the pixels of a rasteriser that looks
-//! along the axis. The area is made of triangles that leave no gap between them, so no crossed face is
-//! missed.
+//! The area crosses the face between two voxels if it crosses the line segment between their centres. For
+//! each axis, the lines through the voxel centres along that axis are tested, like the pixels of a rasteriser
+//! that looks along the axis. The area is made of triangles that leave no gap between them, so no crossed
+//! face is missed.
 
 use crate::foundation::dim::{Dim, Point};
 use glam::DVec3;
@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 /// Rest position in the lattice of a body [voxels].
 pub type RestPosition = DVec3;
 
-/// Faces, each given by the voxel on its low side and its axis.
+/// Faces between voxels, each given by the voxel on its low side and its axis.
 pub type Faces = BTreeSet<(Point, usize)>;
 
 /// Adds the faces of a grid of `size` [voxels] that a quadrilateral patch crosses. The corners of the patch
@@ -26,7 +26,7 @@ pub fn go_through<D: Dim>([a, b, c, d]: [RestPosition; 4], size: Point, faces: &
     }
 }
 
-/// Returns the area of a patch [voxel²].
+/// Returns the area of a quadrilateral patch [voxel²].
 pub fn area([a, b, c, d]: [RestPosition; 4]) -> f64 {
     let half = |u: RestPosition, v: RestPosition| {
         let square = |i: usize, j: usize| {
@@ -54,7 +54,8 @@ fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut F
                 side(seen[2], seen[0], middle),
                 side(seen[0], seen[1], middle),
             ];
-            // A line through a common edge of two triangles is counted for both, so that no face is missed.
+            // A line that meets the common edge of two triangles is counted for both, so that no face is
+            // missed.
             if shares.iter().any(|share| share * double < 0.0) {
                 continue;
             }
@@ -70,7 +71,7 @@ fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut F
 }
 
 /// Returns a number whose sign tells on which side of the line from `a` to `b` the point is. Swapping `a` and
-/// `b` changes exactly the sign, so two triangles agree about points near their common edge.
+/// `b` changes only the sign, bit by bit, so two triangles agree about points near their common edge.
 fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     let is_forward = a <= b;
     let (low, high) = if is_forward { (a, b) } else { (b, a) };

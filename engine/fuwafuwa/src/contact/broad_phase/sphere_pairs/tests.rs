@@ -148,7 +148,7 @@ fn list_contains_all_close_pairs_of_moving_crumbs() {
     check::<Dim3>(6);
 }
 
-/// Returns the crack-face pairs by element.
+/// Returns the crack-face pairs, each as the body and element of both spheres, in ascending order.
 fn lips(spheres: &Spheres) -> Vec<[(BodySlot, ElementId); 2]> {
     let key = |sphere: SphereId| spheres.list[sphere].key();
     let ascending = |[a, b]: [(BodySlot, ElementId); 2]| [a.min(b), a.max(b)];
