@@ -160,8 +160,9 @@ pub fn slow_down<D: Dim>(
     {
         return;
     }
-    // New velocity of a node: v ← kept v + pace(x). The velocity of the centre of mass keeps the fraction 1 −
-    // drag, the angular velocity (1 − drag)(1 − spin), and the vibration (1 − drag)(1 − swing).
+    // New velocity of a node at x: a fraction of its velocity plus the velocity at x of a rigid motion,
+    // `pace`. As a result, the velocity of the centre of mass is multiplied by 1 − drag, the angular velocity
+    // by (1 − drag)(1 − spin), and the vibration by (1 − drag)(1 − swing).
     let paces: Vec<_> = rigid
         .iter()
         .zip(slowing)

@@ -299,8 +299,8 @@ impl<D: Dim> ElementBatches<D> {
         assigned.is_some_and(|&(block, _)| block != VACANT)
     }
 
-    /// Sets the rotation of a 3D element, a unit quaternion (x, y, z, w). The next evaluation improves the
-    /// rotation from there.
+    /// Sets the rotation of a 3D element to a unit quaternion (x, y, z, w). The iteration of the next
+    /// evaluation starts from this rotation.
     pub fn set_rotation(&mut self, id: ElementId, turned: [f32; 4]) {
         let (block, lane) = self.assigned[id];
         let rotation = &mut self.blocks[block as usize].rotation;

@@ -93,9 +93,9 @@ pub struct ElementView {
 pub struct ElementFace {
     /// Slots at the corners of the face: two in 2D, four in 3D, in the order of [`face_corners`].
     pub slots: [usize; 4],
-    /// In 3D, for each side of the face, whether the surface of the region bends there. False if a further
-    /// face of the region continues in the same plane beyond the side. Side k leads from corner k to the next
-    /// corner.
+    /// In 3D, for each side of the face, whether the surface of the region bends at the side. False if a
+    /// further face of the region continues in the same plane beyond the side. Side k leads from corner k to
+    /// the next corner.
     pub is_edge: [bool; 4],
 }
 

@@ -64,8 +64,8 @@ pub struct Mesh<D: Dim> {
     elements: IndexVec<ElementId, Option<Element>>,
     nodes: IndexVec<NodeId, Node>,
     element_classes: Vec<ElementClass<D>>,
-    /// Whether every lattice point of the surface is a node even if the elements there are large: true for
-    /// [`Grading::Coarse`] only.
+    /// Whether every lattice point of the surface is a node even if the elements at the surface are large:
+    /// true for [`Grading::Coarse`] only.
     dense_surface: bool,
     places: CellIndexing,
     /// Ids of the elements of each cell, by the index of the cell.

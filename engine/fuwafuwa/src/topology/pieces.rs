@@ -2,9 +2,10 @@
 //!
 //! Elements that share a node belong to one piece. A release can divide a piece only at the released points.
 //! At each such point, one search through the mesh starts on each side of the new crack. All searches advance
-//! at the same pace. Two searches that meet continue as one. A search that has no more elements to visit has
-//! found a new piece. The cost is therefore proportional to the smaller side. If many points were released at
-//! once, a search that meets an earlier one continues with its results.
+//! at the same pace. Two searches that meet continue as one. A search that has no more elements to visit,
+//! while others still run, has found a new piece. The last running search stops: its elements keep their
+//! piece. The cost is therefore proportional to the smaller side. If many points were released at once, a
+//! search that meets an earlier one continues with its results.
 
 use crate::foundation::dim::Dim;
 use crate::foundation::disjoint_sets::DisjointSets;
@@ -73,7 +74,7 @@ struct Sides {
     joined: DisjointSets,
     /// Searches that are still running.
     running: VecDeque<Search>,
-    /// Searches that stopped because all sides of their piece had met.
+    /// Searches that stopped because no other search of their piece was still running.
     resting: Vec<Search>,
     /// Numbers of the pieces detached by this release.
     born: Vec<PieceId>,
@@ -171,9 +172,9 @@ impl Pieces {
         self.of_element[element] = self.of_node[nodes[0]];
     }
 
-    /// Finds the pieces that a release has detached. `places` contains, for each released point, the elements
-    /// around the point. If these elements are not connected any more, each part except one becomes a new
-    /// piece. Returns the numbers of the new pieces.
+    /// Finds the pieces that a release has detached. `places` contains one list of elements for each cluster
+    /// of released points: the elements around these points. If the elements of a list are not connected any
+    /// more, each part except one becomes a new piece. Returns the numbers of the new pieces.
     pub fn detach<D: Dim>(&mut self, mesh: &Mesh<D>, places: &[Vec<ElementId>]) -> Vec<PieceId> {
         if self.marked > u32::MAX / 2 {
             self.marked = 0;
@@ -202,7 +203,7 @@ impl Pieces {
         sides.born
     }
 
-    /// Implements [`Pieces::detach`] for the elements around one released point.
+    /// Implements [`Pieces::detach`] for the elements `around` one cluster of released points.
     fn part_at<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[ElementId], sides: &mut Sides) {
         let mut by_piece: BTreeMap<PieceId, Vec<Vec<ElementId>>> = BTreeMap::new();
         for side in sides_of(mesh, around) {
@@ -216,7 +217,8 @@ impl Pieces {
         }
     }
 
-    /// Runs one search from each side `starts` of a piece, until all searches have met or ended.
+    /// Runs one search from each side `starts` of a piece, until only one is still running. The others have
+    /// merged into a search that they met, or have found new pieces.
     fn follow<D: Dim>(&mut self, mesh: &Mesh<D>, starts: Vec<Vec<ElementId>>, sides: &mut Sides) {
         let first = sides.first;
         let mut known = Vec::new();

@@ -11,8 +11,8 @@ use crate::topology::element_class::{ElementClass, cell_corners, slot_at};
 
 impl<D: Dim> Mesh<D> {
     /// Gives an element the nodes and the class that follow from the connectivity and the neighbouring
-    /// elements. Returns false if the nodes were the same before. If `past` is given, records there from
-    /// which old nodes each new node inherits its state.
+    /// elements. Returns false if the nodes were the same before. If `past` is given, it receives for each
+    /// new node the old nodes from which the state of the new node is interpolated.
     pub(super) fn seat(
         &mut self,
         id: ElementId,
