@@ -1,9 +1,10 @@
-//! Instances of the generic engine for 2D and 3D.
+//! Compiled instances of the generic engine for 2D and 3D.
 //!
-//! A generic function is compiled in each crate that calls it with concrete types, at the optimisation level of that
-//! crate. An `#[inline(never)]` function whose instance exists in its own crate is linked from there instead. All
-//! functions that loop over nodes, elements or voxels are therefore `#[inline(never)]` and named here. A missing entry
-//! costs compile time and the speed of debug builds, nothing else.
+//! A generic function is compiled in each crate that calls it with concrete types, at the optimisation level
+//! of that crate. An `#[inline(never)]` function is an exception: if the crate that defines it already
+//! contains the instance, other crates link to this instance. All functions that loop over nodes, elements or
+//! voxels are therefore `#[inline(never)]` and named here. A function that is missing in this list costs
+//! compile time, and is slow in debug builds.
 
 use crate::foundation::dim::{Dim, Dim2, Dim3};
 use std::hint::black_box;

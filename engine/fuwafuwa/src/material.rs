@@ -11,37 +11,37 @@ use crate::soft_body::plasticity::Plasticity;
 pub struct Material {
     /// Elastic constants: stiffness and lateral expansion.
     pub elasticity: Elasticity,
-    /// Density [kg/m³], in 2D of a sheet 1 m deep. About 100 for a game body.
+    /// Density [kg/m³]; usually about 100. In 2D it is that of a sheet 1 m deep.
     pub density: f32,
-    /// Damping ratio of the slowest mode of a body, 0 to 1: 0 rings for ever, 1 is critically damped. Usually
-    /// about 0.08.
+    /// Damping ratio of the slowest vibration mode of a body, 0 to 1; usually about 0.08. 0 = vibrates for
+    /// ever, 1 = critically damped. A body of several materials uses the mean over its voxels.
     pub damping: f32,
-    /// Coulomb friction coefficient between pieces and between bodies, 0 to 2. Usually about 0.4. Two
-    /// surfaces use the mean of both. Contacts with rigid bodies use the [friction of the rigid
-    /// body](crate::RigidBody::friction) instead.
+    /// Coulomb friction coefficient between pieces and between bodies, 0 to 2; usually about 0.4. A contact
+    /// between two soft surfaces uses the mean of their coefficients. A contact with a rigid body uses the
+    /// [friction of the rigid body](crate::RigidBody::friction) alone.
     pub friction: f32,
     /// Tensile strength of a smooth surface [Pa]: the tension at which a crack starts; infinite = never
-    /// tears. A fifth of Young's modulus gives a body that can be torn by hand.
+    /// tears. A player can tear a body with a strength of a fifth of Young's modulus by hand.
     pub strength: f32,
-    /// Toughness of a crack tip [Pa √m]: tension times the root of the distance over which the tension is
-    /// spread.
+    /// Fracture toughness [Pa √m]; default 200. A crack grows if the tension at its tip exceeds toughness /
+    /// √voxel size.
     ///
-    /// The smaller the voxels, the sharper a crack tip, and its tension grows with 1/√voxel. The solver
-    /// compares the tension with toughness/√voxel, so that a body tears at the same load at every resolution
-    /// [Griffith 1921].
+    /// Smaller voxels resolve a sharper crack tip, at which the tension grows with 1/√voxel size. The
+    /// threshold grows in the same way, so that a body tears at the same load at every resolution [Griffith
+    /// 1921].
     ///
-    /// Rule of thumb, with toughness in Pa √m and strength in Pa: at toughness = 0.2 strength, a crack that has
-    /// started keeps running; at 0.5 strength, cracks stop near the surface.
+    /// Rule of thumb, with toughness in Pa √m and strength in Pa: at toughness = 0.2 strength, a crack that
+    /// has started keeps running; at toughness = 0.5 strength, cracks stop near the surface.
     pub toughness: f32,
-    /// Yield strain. Strain beyond it becomes permanent; volume is preserved. Infinite (default) = purely
-    /// elastic, like rubber.
+    /// Yield strain; infinite (default) = purely elastic, like rubber. Strain beyond the yield strain becomes
+    /// permanent; volume is preserved.
     ///
-    /// About 0.05 is clay, which keeps its pressed shape; 0.3 is dough, which gives way slowly. Far below
-    /// 0.01 a body flows under its own weight. Ignored under [`Law::Endo2004`](crate::Law::Endo2004).
+    /// 0.05 is clay, which keeps its pressed shape; 0.3 is dough, which yields slowly. Far below 0.01, a body
+    /// flows under its own weight. Ignored under [`Law::Endo2004`](crate::Law::Endo2004).
     pub yield_strain: f32,
-    /// Limit of plastic compression, 1 to 4: the largest factor by which a width can shrink permanently.
-    /// Beyond the limit, the material is elastic. Usually about 2. Higher values allow thinner sheets, but
-    /// also flatter elements.
+    /// Plastic limit, 1 to 4: the largest factor by which plastic flow can shrink a width; usually about 2.
+    /// An element at the limit deforms only elastically. A higher limit allows thinner sheets, but also
+    /// flatter elements.
     pub plastic_limit: f32,
 }
 
@@ -52,9 +52,9 @@ hash_state! {
 }
 
 impl Default for Material {
-    /// Soft body for a game: Y = 5000 Pa, ν = 0.3, 100 kg/m³. A thin rigid body that pushes with some 1000 N
-    /// tears a body 1 m across. In 3D, a fall of a few decimetres cracks it. Raise the strength for higher
-    /// loads.
+    /// Soft body for a game: Young's modulus 5000 Pa, Poisson's ratio 0.3, density 100 kg/m³. A thin rigid
+    /// body that pushes with some 1000 N tears a body 1 m across. In 3D, a fall of a few decimetres cracks
+    /// the body. Raise the strength for higher loads.
     fn default() -> Self {
         Self {
             elasticity: Elasticity {
@@ -132,7 +132,7 @@ impl Material {
         }
     }
 
-    /// Plastic parameters, if the yield strain is finite.
+    /// Returns the yield strain and the plastic limit; `None` if the material is purely elastic.
     pub(crate) fn plasticity(&self) -> Option<Plasticity> {
         (self.yield_strain < f32::INFINITY).then(|| Plasticity {
             yield_strain: f64::from(self.yield_strain),
@@ -145,17 +145,19 @@ impl Material {
         (f64::from(self.toughness) * f64::from(self.toughness) / self.elasticity.young) as f32
     }
 
-    /// Speed of a pressure wave [m/s].
+    /// Speed of a pressure wave [m/s]: √((λ + 2µ) / ρ), with Lamé's parameters λ and µ and the density ρ.
     pub fn wave_speed(&self) -> f64 {
         let stiffness = self.elasticity.lame() + 2.0 * self.elasticity.shear_modulus();
         (stiffness / f64::from(self.density)).sqrt()
     }
 
-    /// Angular frequency Ω of the breathing mode of a single free voxel, times its width s [m/s].
+    /// Returns Ω s [m/s]: the angular frequency Ω of the breathing mode of a single free voxel, times the
+    /// width s of the voxel.
     ///
-    /// In the breathing mode, all nodes are (1 + ε) times as far from the middle. In N dimensions, the
-    /// elastic energy per volume is ½ N² (λ + 2µ/N) ε². The kinetic energy is ½ ρ N s²/4 ε'², because the
-    /// mass sits in the corners. So Ω² = 4 N (λ + 2µ/N) / ρs².
+    /// In the breathing mode, the distance of every node from the centre of the voxel grows by the factor 1 +
+    /// ε. In N dimensions, the elastic energy per volume is ½ N² (λ + 2µ/N) ε², with Lamé's parameters λ and
+    /// µ. The kinetic energy per volume is ½ ρ N s²/4 ε'², because the mass, of density ρ, sits in the
+    /// corners. Therefore Ω² = 4 N (λ + 2µ/N) / ρs².
     pub(crate) fn voxel_swing(&self, dimensions: usize) -> f64 {
         let axes = dimensions as f64;
         let stiffness = axes * self.elasticity.lame() + 2.0 * self.elasticity.shear_modulus();

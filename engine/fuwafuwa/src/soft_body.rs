@@ -50,24 +50,25 @@ use glam::Vec3;
 /// Courant number of a substep: the fastest pressure wave travels at most this fraction of a voxel per
 /// substep.
 ///
-/// In a body at rest, a single free voxel oscillates fastest. With width s, angular frequency Ω and wave
-/// speed c, it is stable up to a Courant number of 2c / Ωs: 0.73 in 3D and 0.84 in 2D, at a Poisson's ratio
-/// of 0.3. Squashed elements oscillate faster. With 0.6, a ball stays stable if it is squashed to 40 % of its
-/// height and hit at its wave speed.
+/// The fastest mode of a body at rest is the oscillation of a single free voxel. Let the voxel have the width
+/// s, the angular frequency Ω and the wave speed c. The oscillation is stable up to a Courant number of 2c /
+/// Ωs: 0.73 in 3D and 0.84 in 2D, at a Poisson's ratio of 0.3. Squashed elements oscillate faster. At 0.6, a
+/// ball stays stable even if it is squashed to 40 % of its height and hit at its wave speed.
 const COURANT: f64 = 0.6;
-/// Fraction of the largest stable lead that [`SoftBody::damping`] uses. The margin is about that of the
-/// squared substep, (0.6 / 0.73)², under [`COURANT`] in 3D.
+/// Fraction of the largest stable damping lead that [`SoftBody::damping`] uses. The lead is the time by which
+/// positions are extrapolated before elastic forces are evaluated. 0.7 leaves about the margin that
+/// [`COURANT`] leaves in 3D for the squared substep: (0.6 / 0.73)² = 0.68.
 const LEAD_USED: f64 = 0.7;
 
 /// Arena of the soft bodies of a world.
 pub type SoftBodies<D> = Arena<SoftBodyHandle, SoftBody<D>>;
 
-/// Soft body, whole or in pieces.
+/// Soft body: voxels, elastic elements and nodes, whole or torn into pieces.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct SoftBody<D: Dim> {
-    // Snapshots contain the topology and the state, from which the cache is rebuilt.
+    // Snapshots contain `topology` and `state`. `cache` is rebuilt from both.
     topology: Topology<D>,
     state: State<D>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -87,8 +88,8 @@ impl<D: Dim> SoftBody<D> {
         Self::with_options(grid, materials, Law::default(), Grading::default())
     }
 
-    /// Creates a body like [`SoftBody::new`], with a chosen law and grading. A body of [`Grading::Coarse`]
-    /// can be neither torn nor cut.
+    /// Creates a body like [`SoftBody::new`], with a chosen law of elastic forces and a chosen grading of the
+    /// elements. A body of [`Grading::Coarse`] can be neither torn nor cut.
     ///
     /// # Errors
     /// See [`SoftBody::new`].
@@ -149,7 +150,7 @@ impl<D: Dim> SoftBody<D> {
         Ok(body)
     }
 
-    /// Recomputes the cache and the element stiffness from the topology and the state.
+    /// Recomputes the cache and the elastic moduli of the elements from the topology and the state.
     pub(crate) fn rebuild(&mut self) {
         let Topology {
             grid,
@@ -173,15 +174,15 @@ impl<D: Dim> SoftBody<D> {
 
     /// Returns the changes since `bookmark`, and moves the bookmark to the present.
     ///
-    /// Returns `None` if the changes are not known: for a new bookmark, a bookmark of another body, or one
-    /// that is too old. The caller must then read the whole body again.
+    /// Returns `None` if the changes are not known. This is so if the bookmark is a default one, belongs to
+    /// another body or is too old. The caller must then read the whole body again.
     pub fn changes_since(&self, bookmark: &mut Bookmark) -> Option<Changes> {
         let changes = self.cache.history.since(*bookmark);
         *bookmark = self.bookmark();
         changes
     }
 
-    /// Returns a bookmark at the present state.
+    /// Returns a bookmark at the present end of the body's history of changes.
     pub fn bookmark(&self) -> Bookmark {
         self.cache.history.end()
     }
@@ -236,7 +237,7 @@ impl<D: Dim> SoftBody<D> {
         &self.topology.pieces
     }
 
-    /// Materials, number 1 first.
+    /// Materials of the body. Material number n of the grid is at index n − 1.
     pub fn materials(&self) -> &[Material] {
         &self.topology.materials
     }
@@ -292,14 +293,14 @@ impl<D: Dim> SoftBody<D> {
         D::Vector::from_vec3(self.state.blocks.force_on(id).xyz())
     }
 
-    /// Linear and angular momentum of the whole body about the origin.
+    /// Linear and angular momentum of the whole body about the origin [kg m/s, kg m²/s].
     #[inline(never)]
     pub fn momentum(&self) -> Momentum {
         let ids: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
         Momentum::of(self.states(&ids), DVec3::ZERO)
     }
 
-    /// Kinetic energy [J].
+    /// Kinetic energy of the whole body [J].
     #[inline(never)]
     pub fn kinetic_energy(&self) -> f64 {
         let states = self.topology.mesh.nodes().map(|(id, _)| {
@@ -309,8 +310,8 @@ impl<D: Dim> SoftBody<D> {
         states.sum()
     }
 
-    /// Number of awake elements that were inverted when forces were last computed. Always 0 under
-    /// [`Law::Endo2004`], which does not check for inversion.
+    /// Number of awake elements with negative volume, that is, turned inside out, when forces were last
+    /// computed. Always 0 under [`Law::Endo2004`], which does not check for inversion.
     pub fn inverted_count(&self) -> u32 {
         self.state.blocks.inverted_count()
     }
@@ -323,12 +324,13 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Returns the damping for substeps of `duration` [s]: the lead of the elastic forces [s], and the rate
-    /// [1/s] at which each piece relaxes towards its rigid motion. The lead is the time by which positions
-    /// are extrapolated before forces are evaluated.
+    /// [1/s] at which the velocities of each piece relax towards its rigid motion. The lead is the time by
+    /// which positions are extrapolated before forces are evaluated.
     ///
     /// A lead τ damps the slowest mode, of angular frequency ω, with the ratio τω/2. The fastest mode, of
-    /// angular frequency Ω, is the oscillation of a single voxel. With substeps of length h it is stable if
-    /// Ω²h (h + 2τ) < 4, that is τ < (4/Ω² − h²) / 2h; [`LEAD_USED`] keeps a margin.
+    /// angular frequency Ω, is the oscillation of a single voxel. For substeps of length h, this mode is
+    /// stable if Ω²h (h + 2τ) < 4, that is, τ < (4/Ω² − h²) / 2h. The lead is at most [`LEAD_USED`] times
+    /// this bound; the rate supplies the remaining damping of the slowest mode.
     pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
         let ratio = self.cache.blend.damping;
         let slow = self.cache.blend.slow * self.topology.stiffness_scale.sqrt();
@@ -340,7 +342,7 @@ impl<D: Dim> SoftBody<D> {
         (lead as f32, rate as f32)
     }
 
-    /// Friction coefficient of the surface.
+    /// Friction coefficient of the body: the mean over its voxels.
     pub(crate) fn friction(&self) -> f32 {
         self.cache.blend.friction
     }
@@ -350,7 +352,8 @@ impl<D: Dim> SoftBody<D> {
         self.cache.blend.least_strength < f32::INFINITY
     }
 
-    /// Longest stable substep [s] of the stiffest material: 0.6 s / c, with voxel size s and wave speed c.
+    /// Longest stable substep [s]: 0.6 h / c, with the voxel size h [m] and the speed c [m/s] of the fastest
+    /// pressure wave. The speed follows from the present stiffness: see [`SoftBody::stiffness_scale`].
     pub fn longest_substep(&self) -> f64 {
         let fastest = self.cache.blend.fastest_wave * self.topology.stiffness_scale.sqrt();
         COURANT * f64::from(self.topology.grid.voxel_size()) / fastest
@@ -361,7 +364,8 @@ impl<D: Dim> SoftBody<D> {
         self.topology.stiffness_scale
     }
 
-    /// Lowers the stiffness just enough for a substep of `duration` [s] to be stable.
+    /// Sets the stiffness scale to the largest value, at most 1, at which a substep of `duration` [s] is
+    /// stable.
     pub(crate) fn scale_stiffness_for(&mut self, duration: f64) {
         let size = f64::from(self.topology.grid.voxel_size());
         let ratio = COURANT * size / self.cache.blend.fastest_wave / duration;
@@ -374,7 +378,8 @@ impl<D: Dim> SoftBody<D> {
         self.state.blocks.set_elasticities(&elasticities);
     }
 
-    /// Speed of the fastest pressure wave [m/s], before any reduction of the stiffness.
+    /// Speed of the fastest pressure wave [m/s] at the full stiffness of the materials, that is, at a
+    /// stiffness scale of 1.
     pub(crate) fn fastest_wave(&self) -> f64 {
         self.cache.blend.fastest_wave
     }

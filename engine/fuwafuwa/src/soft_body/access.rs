@@ -1,4 +1,4 @@
-//! Access to bodies for contacts, fracture and the world.
+//! Access to the state of bodies, for contacts, fracture and the world.
 
 use super::SoftBody;
 use super::cooldowns::Cooldowns;
@@ -11,7 +11,7 @@ use crate::topology::changes::History;
 use crate::topology::pieces::Pieces;
 
 impl<D: Dim> SoftBody<D> {
-    /// Returns the velocities of all nodes [m/s].
+    /// Returns the velocity of each node [m/s], by id.
     #[inline(always)]
     pub(crate) fn velocities(&self) -> &IndexVec<NodeId, Row> {
         &self.state.velocity
@@ -27,19 +27,19 @@ impl<D: Dim> SoftBody<D> {
         &mut self.state.position
     }
 
-    /// Returns the masses of all nodes [kg].
+    /// Returns the mass of each node [kg], by id.
     #[inline(always)]
     pub(crate) fn masses(&self) -> &IndexVec<NodeId, f32> {
         &self.state.mass
     }
 
-    /// Returns the inverse masses of all nodes [1/kg]; 0 while a node is fixed or sleeps.
+    /// Returns the inverse mass of each node [1/kg], by id; 0 while the node is fixed or sleeps.
     #[inline(always)]
     pub(crate) fn inverse_masses(&self) -> &IndexVec<NodeId, f32> {
         &self.state.inverse_mass
     }
 
-    /// Returns the nodes of awake pieces, ascending.
+    /// Returns the ids of the nodes of awake pieces, ascending.
     #[inline(always)]
     pub(crate) fn awake_nodes(&self) -> &[NodeId] {
         &self.cache.awake
@@ -50,21 +50,23 @@ impl<D: Dim> SoftBody<D> {
         &mut self.topology.pieces
     }
 
-    /// Returns the mask of the exposed faces of an element, or `None` if the id was never used. Valid for
-    /// elements of level 0 only; larger elements may return an outdated mask.
+    /// Returns the mask of the exposed faces of an element, with bit 2 · axis + side (0 = low, 1 = high), or
+    /// `None` if the id was never used. Valid only for elements of level 0; the mask of a larger element may
+    /// be outdated.
     #[inline(always)]
     pub(crate) fn exposed_faces(&self, element: ElementId) -> Option<u8> {
         self.cache.bare.get(element.index()).copied()
     }
 
-    /// Returns the mask of the voxels around an element that share a node with the element. Valid only if the
-    /// element has exposed faces.
+    /// Returns the mask of the voxels around an element that share a node with the element, with the bits of
+    /// [`Connectivity::connected_voxels`](crate::topology::connectivity::Connectivity::connected_voxels).
+    /// Valid only if the element has exposed faces.
     #[inline(always)]
     pub(crate) fn connected_voxels(&self, element: ElementId) -> u32 {
         self.cache.bound[element]
     }
 
-    /// Returns the rotations and forces of all elements.
+    /// Returns the batches of all elements, with their rotations and their forces.
     #[inline(always)]
     pub(crate) fn element_forces(&self) -> &ElementBatches<D> {
         &self.state.blocks
@@ -76,7 +78,7 @@ impl<D: Dim> SoftBody<D> {
         &self.cache.breakable
     }
 
-    /// Returns the damage of all nodes.
+    /// Returns the damage of each node, by id: 0 = intact, 1 = split.
     pub(crate) fn damage_mut(&mut self) -> &mut IndexVec<NodeId, f32> {
         &mut self.state.damage
     }

@@ -1,4 +1,4 @@
-//! Affine motion of elements: maps between the undeformed body and world space.
+//! Affine motion of elements: maps between the undeformed body and the deformed body in world space.
 
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, NodeId};
@@ -8,12 +8,14 @@ use crate::topology::element_class::slot_at;
 use crate::topology::mesh::Element;
 use glam::Vec3;
 
-/// Volume ratio below which an element counts as flat, so that its motion is not inverted. The inverse would
-/// amplify the rounding of positions from about 1e-5 to more than 1e-2 of a voxel.
+/// Volume ratio below which an element counts as flat. The deformation gradient of a flat element is not
+/// inverted: the inverse would amplify rounding errors of positions from about 1e-5 to more than 1e-2 of a
+/// voxel.
 const FLAT: f32 = 0.01;
 
 impl<D: Dim> SoftBody<D> {
-    /// Returns the centre of an element [m], and its deformation gradient F by rows.
+    /// Returns the volume centroid [m] of an element in its present shape, and the rows of its deformation
+    /// gradient F.
     pub(crate) fn deformation(&self, element: &Element) -> (Vec3, [Vec3; 3]) {
         let element_class = self.topology.mesh.element_class(element);
         let half = 0.5 * self.topology.grid.voxel_size() * element.cell.width() as f32;
@@ -36,7 +38,8 @@ impl<D: Dim> SoftBody<D> {
         (centre, gradient)
     }
 
-    /// Elastic part of the deformation gradient, without plastic deformation.
+    /// Returns the rows of the elastic part F G of an element's deformation gradient F; G is the plastic
+    /// inverse.
     pub(crate) fn elastic_part(&self, id: ElementId, element: &Element) -> [Vec3; 3] {
         let (_, gradient) = self.deformation(element);
         let Some(undone) = self.state.blocks.plastic_inverse(id) else {
@@ -46,15 +49,15 @@ impl<D: Dim> SoftBody<D> {
         gradient.map(|row| Vec3::from([0, 1, 2].map(|j: usize| row.dot(column(j)))))
     }
 
-    /// Returns the affine motion of an element: maps a point of the undeformed body, in voxels, to its
-    /// position [m].
+    /// Returns the affine motion of an element: a function that maps a point of the undeformed body, in
+    /// voxels from the low corner of the grid, to its present position [m].
     pub(crate) fn affine_map(&self, element: &Element) -> impl Fn(Vec3) -> Vec3 + use<D> {
         let (centre, gradient) = self.deformation(element);
         let element_class = self.topology.mesh.element_class(element);
         let size = self.topology.grid.voxel_size();
         let half = 0.5 * size * element.cell.width() as f32;
-        // `origin` is the rest position of the cell's low corner, relative to the volume centroid of the
-        // element.
+        // `origin` is the offset [m], in the undeformed body, of the cell's low corner from the volume
+        // centroid of the element.
         let steps = Vec3::from(slot_at(element_class.slots[0] as usize).map(|k| k as f32)) * half;
         let origin = element_class.offsets[0].as_vec3() * half - steps;
         let low = element.cell.first_voxel().map(|k| k as f32);
@@ -71,8 +74,8 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Maps a position [m] back to the undeformed body, in voxels, by the motion of an element: the inverse
-    /// of [`SoftBody::affine_map`]. `None` if the element is flat.
+    /// Maps a position [m] back to the undeformed body by the motion of an element, to a point in voxels from
+    /// the low corner of the grid. Inverse of [`SoftBody::affine_map`]. `None` if the element is flat.
     pub(crate) fn at_rest(&self, element: &Element, at: Vec3) -> Option<Vec3> {
         let element_class = self.topology.mesh.element_class(element);
         let size = self.topology.grid.voxel_size();
@@ -87,9 +90,9 @@ impl<D: Dim> SoftBody<D> {
         Some(place)
     }
 
-    /// Returns the weight of each node of an element at a point of the undeformed body, in voxels.
-    /// Interpolation with these weights is exact for linear functions. Impulses that are distributed with the
-    /// weights therefore keep their torque.
+    /// Returns the weight of each node of an element at the point `at` of the undeformed body, in voxels from
+    /// the low corner of the grid. Interpolation with these weights is exact for linear functions. An impulse
+    /// at the point that is distributed with the weights therefore exerts the same torque.
     pub(crate) fn weights(&self, element: &Element, at: Vec3) -> Vec<(NodeId, f32)> {
         let element_class = self.topology.mesh.element_class(element);
         let half = 0.5 * element.cell.width() as f32;
@@ -109,22 +112,23 @@ impl<D: Dim> SoftBody<D> {
         nodes.map(|(place, &node)| (node, weight(place))).collect()
     }
 
-    /// Velocity [m/s] of a point of an element, interpolated with the weights that [`SoftBody::weights`]
-    /// returns for the point.
+    /// Velocity [m/s] of a point of an element, interpolated between the nodes with `weights`, which
+    /// [`SoftBody::weights`] returned for the point.
     pub(crate) fn velocity_of(&self, weights: &[(NodeId, f32)]) -> Vec3 {
         let share = |&(node, weight): &(NodeId, f32)| self.state.velocity[node] * weight;
         weights.iter().map(share).sum::<Row>().xyz()
     }
 
-    /// Maps a position [m] to its offset from the centroid of an element before deformation [m]. `None` if
-    /// the element is flat.
+    /// Maps a present position [m] to an offset [m] from the volume centroid of the undeformed element.
+    /// `None` if the element is flat.
     fn offset_at_rest(&self, element: &Element, at: Vec3) -> Option<Vec3> {
         let (centre, undo) = self.inverse_deformation(element)?;
         Some(undo(at - centre))
     }
 
-    /// Returns the centre of an element [m], and the inverse of its deformation gradient, as a function from
-    /// world-space vectors to vectors of the undeformed body. `None` if the element is flat.
+    /// Returns the volume centroid [m] of an element in its present shape, and the inverse of its deformation
+    /// gradient. The inverse is a function that maps world-space vectors to vectors of the undeformed body.
+    /// `None` if the element is flat.
     pub(crate) fn inverse_deformation(
         &self,
         element: &Element,
@@ -144,7 +148,8 @@ impl<D: Dim> SoftBody<D> {
         Some((centre, undo))
     }
 
-    /// Returns the child of an element's cell that contains a position [m].
+    /// Returns the index of the child of an element's cell that contains a position [m]. `None` if the
+    /// position is outside the cell, or if the element is flat.
     pub(crate) fn child_at(&self, element: &Element, at: Vec3) -> Option<usize> {
         let from_centroid = self.offset_at_rest(element, at)?;
         let child_width = 0.5 * self.topology.grid.voxel_size() * element.cell.width() as f32;

@@ -9,17 +9,19 @@ use crate::topology::grid::VoxelGrid;
 /// Properties of a whole body, combined from the materials of its voxels.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct BodyProperties {
-    /// Damping ratio of the slowest mode; mean over the voxels.
+    /// Damping ratio of the slowest mode, 0 to 1; mean over the voxels.
     pub damping: f64,
-    /// Angular frequency of the slowest mode [1/s]: ω = π √(Y/ρ) / w, where w is the width of the body.
+    /// Angular frequency of the slowest mode [1/s]: π √(Y/ρ) / w. Young's modulus Y and density ρ are means
+    /// over the voxels; w is the width of a square or cube with the volume of the body.
     pub slow: f64,
     /// Friction coefficient; mean over the voxels.
     pub friction: f32,
     /// Lowest strength of the materials in use [Pa].
     pub least_strength: f32,
-    /// Speed of the fastest pressure wave of the materials in use [m/s].
+    /// Speed of the pressure wave in the material in which it is fastest [m/s].
     pub fastest_wave: f64,
-    /// Angular frequency of the fastest mode, the breathing mode of a single voxel [1/s].
+    /// Angular frequency of the fastest mode [1/s], the breathing mode of a single voxel of the material in
+    /// which it is fastest.
     pub fastest_swing: f64,
 }
 
@@ -73,7 +75,8 @@ pub fn elasticities(materials: &[Material], stiffness_scale: f64) -> Vec<Elastic
     materials.iter().map(soft).collect()
 }
 
-/// Square or cube root by Newton's iteration: platform functions may round differently.
+/// Returns the square root (`order` 2) or cube root (`order` 3) by Newton's iteration. Platform functions may
+/// round differently.
 fn root(of: f64, order: usize) -> f64 {
     let mut root = of.max(1.0);
     for _ in 0..60 {

@@ -7,7 +7,8 @@ use crate::foundation::ids::{IndexVec, NodeId};
 use crate::rigid_body::layers::Layers;
 use crate::soft_body::element_forces::{ElementBatches, Row};
 
-/// Largest absolute value of a body's gravity scale. With it, a body falls by 1 m within three ticks.
+/// Largest absolute value of a body's gravity scale. At this scale, a body under the gravity of the earth
+/// falls by 1 m within three ticks of 1/60 s.
 pub const MAX_GRAVITY_SCALE: f32 = 100.0;
 
 /// State of a body that changes from substep to substep.
@@ -25,15 +26,17 @@ pub struct State<D: Dim> {
     pub inverse_mass: IndexVec<NodeId, f32>,
     /// Whether each node is fixed.
     pub fixed: IndexVec<NodeId, bool>,
-    /// Damage of each node; at 1 the node is split.
+    /// Damage of each node, from 0 (intact) to 1, at which the node is split.
     pub damage: IndexVec<NodeId, f32>,
-    /// Cooldowns of the points at which nodes were released recently.
+    /// Lattice points at which nodes were released recently, with the time until nodes around them can fail
+    /// again.
     pub cooldowns: Cooldowns,
-    /// Positions extrapolated by the damping lead [m], at which the elastic forces are evaluated.
+    /// Position of each node [m], extrapolated by the damping lead. The elastic forces are evaluated at these
+    /// positions.
     pub ahead: IndexVec<NodeId, Row>,
     /// Factor on the gravity of the world, default 1.
     pub gravity_scale: f32,
-    /// Collision layers.
+    /// Collision layers, which decide with which objects the body collides.
     pub layers: Layers,
     /// Number for use by the program; the engine ignores it.
     pub user_data: u64,
@@ -73,7 +76,7 @@ impl<D: Dim> State<D> {
         }
     }
 
-    /// Makes room for `nodes` nodes.
+    /// Resizes the list of each quantity to `nodes` nodes; new entries are 0.
     pub fn make_room(&mut self, nodes: usize) {
         self.position.resize(nodes, Row::ZERO);
         self.velocity.resize(nodes, Row::ZERO);

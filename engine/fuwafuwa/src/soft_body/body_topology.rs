@@ -11,8 +11,9 @@ use crate::topology::pieces::Pieces;
 
 /// Topology of a body: voxels, connectivity, and the mesh that follows from them.
 ///
-/// Grid and connectivity determine everything else except the numbers of cells, elements, nodes and pieces,
-/// which depend on the history. Snapshots therefore contain the numbered objects, too.
+/// Grid, connectivity and grading determine the mesh and the pieces, except for the ids of elements, nodes
+/// and pieces. The ids depend on the order of past cracks. Snapshots therefore contain the mesh and the
+/// pieces, too.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -22,7 +23,7 @@ pub struct Topology<D: Dim> {
     pub hierarchy: CellHierarchy<D>,
     pub mesh: Mesh<D>,
     pub pieces: Pieces,
-    /// Materials, number 1 first.
+    /// Materials of the body. Material number n of the grid is at index n − 1.
     pub materials: Vec<Material>,
     /// Factor by which the stiffness was lowered to keep the substep stable; 1 = unchanged.
     pub stiffness_scale: f64,

@@ -1,4 +1,5 @@
-//! Validation of bodies read from files: a checksum detects damage, but not invalid content.
+//! Validation of bodies read from snapshots. The checksum of a snapshot detects damaged bytes, but not
+//! invalid values.
 
 use super::SoftBody;
 use super::body_properties::plasticities;
@@ -49,7 +50,8 @@ impl<D: Dim> SoftBody<D> {
         Ok(())
     }
 
-    /// Recomputes everything that snapshots do not contain, after the checks.
+    /// Recomputes the batches and the cache, which snapshots do not contain. The body must have passed
+    /// [`SoftBody::check`].
     pub(crate) fn restore(&mut self) {
         let Topology {
             mesh,
@@ -73,8 +75,8 @@ impl<D: Dim> SoftBody<D> {
         rows.iter().all(|row| is_flat(row) && row.is_finite()) && !state.damage[id].is_nan()
     }
 
-    /// Returns whether the mass and the inverse mass of a node are exactly those that follow from its
-    /// elements.
+    /// Returns whether the mass and the inverse mass of a node are exactly those that follow from the
+    /// elements that carry the node.
     fn weighs_right(&self, id: NodeId) -> bool {
         self.state.mass[id] == self.mass_of(id)
             && self.state.inverse_mass[id] == self.inverse_mass_of(id)
@@ -102,7 +104,7 @@ impl<D: Dim> Topology<D> {
 }
 
 impl<D: Dim> State<D> {
-    /// Returns whether the state has an entry for each of `nodes` nodes.
+    /// Returns whether the list of each quantity has exactly `nodes` entries.
     fn has_room(&self, nodes: usize) -> bool {
         let rows = [&self.position, &self.velocity, &self.ahead].map(|rows| rows.len());
         let numbers = [&self.mass, &self.inverse_mass, &self.damage].map(|numbers| numbers.len());
@@ -119,7 +121,7 @@ fn ensure(good: bool, what: &str) -> Result<(), InvariantViolation> {
 }
 
 impl Pieces {
-    /// Returns whether these pieces are the connected parts of the mesh, in any numbering.
+    /// Returns whether these pieces are the connected parts of the mesh. Their numbers may be in any order.
     fn is_sound<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
         let fresh = Self::new(mesh);
         let mut numbers: IndexVec<PieceId, _> = vec![None; fresh.list.len()].into();

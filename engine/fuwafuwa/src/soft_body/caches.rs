@@ -8,8 +8,9 @@ use crate::soft_body::element_forces::Row;
 use crate::soft_body::momentum::RigidMotionF32;
 use crate::topology::changes::History;
 
-/// Data derived from the topology and the state of a body. Snapshots do not contain it: `SoftBody::rebuild`
-/// recomputes it, and each tick begins by recording `before`.
+/// Data derived from the topology and the state of a body. Snapshots do not contain these data.
+/// `SoftBody::rebuild` recomputes them after loading, except the three last fields: `history` starts empty,
+/// and each tick begins by setting `rigid` and `before`.
 #[derive(Clone, Debug, Default)]
 pub struct Cache {
     /// Properties of the body, combined from its materials.
@@ -18,17 +19,20 @@ pub struct Cache {
     pub awake: Vec<NodeId>,
     /// Whether `awake` must be recomputed before use.
     pub awake_is_stale: bool,
-    /// Nodes at which a crack can start or continue, with their thresholds.
+    /// Nodes at which a crack can start or continue, with the tension that each withstands.
     pub breakable: BreakableNodes,
-    /// Mask of the exposed faces of each level-0 element: bit 2 · axis + side.
+    /// Mask of the exposed faces of each level-0 element: bit 2 · axis + side (0 = low, 1 = high).
     pub bare: IndexVec<ElementId, u8>,
-    /// Mask of the surrounding voxels that share a node with the element, for elements with exposed faces;
-    /// see [`Connectivity::connected_voxels`](crate::topology::connectivity::Connectivity::connected_voxels).
+    /// For each element with exposed faces, mask of the voxels around the element that share a node with the
+    /// element; see
+    /// [`Connectivity::connected_voxels`](crate::topology::connectivity::Connectivity::connected_voxels).
     pub bound: IndexVec<ElementId, u32>,
-    /// History of recent changes, which callers read through bookmarks.
+    /// History of recent cracks and removals, which callers read through bookmarks.
     pub history: History,
-    /// Rigid motion of each piece at the last damping round. Every tick begins with a damping round.
+    /// Rigid motion of each piece at the last damping round, relative to which positions are extrapolated.
+    /// Every tick begins with a damping round.
     pub rigid: IndexVec<PieceId, RigidMotionF32>,
-    /// Lattice point and position [m] of every node at the start of the tick, by id; NaN for unused ids.
+    /// Lattice point and position [m] of every node at the start of the tick, by id. The position of an
+    /// unused id is NaN.
     pub before: Vec<(Point, Row)>,
 }

@@ -1,9 +1,10 @@
-//! Damping of the internal vibration of pieces towards their rigid motion.
+//! Damping of the vibration of pieces, that is, of all motion relative to their rigid motion.
 //!
 //! Two dampers are combined. First, the elastic forces are evaluated at extrapolated positions
 //! (Kelvin–Voigt). This damps fast modes, but the stability limit of the substep leaves slow modes almost
-//! undamped. Second, the velocities of each piece relax towards its rigid motion, at the rate 2 ζ ω of a
-//! damped oscillator; this damps slow modes. Neither damper changes linear or angular momentum.
+//! undamped. Second, the velocities of each piece relax towards its rigid motion, at the rate 2 ζ ω of an
+//! oscillator with damping ratio ζ and angular frequency ω. This damps slow modes. Neither damper changes
+//! linear or angular momentum.
 
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, PieceId};
@@ -13,30 +14,30 @@ use crate::soft_body::SoftBody;
 use crate::soft_body::momentum::RigidMotion;
 use glam::DVec3;
 
-/// Motion of one piece.
+/// Motion of one piece, with the moments of its mass; all 0 for a sleeping piece.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct PieceMotion {
-    /// Mass of the awake nodes [kg].
+    /// Mass [kg].
     pub mass: f64,
     /// Centre of mass [m].
     pub centre: DVec3,
     /// Velocity of the centre of mass [m/s].
     pub velocity: DVec3,
-    /// Mean square speed [m²/s²].
+    /// Mean of the squared speed over the mass of the piece [m²/s²].
     pub speed_squared: f64,
-    /// Number of awake nodes.
+    /// Number of nodes; 0 for a sleeping piece.
     pub nodes: u32,
-    /// Whether fixed nodes of the piece have a velocity; such a piece never sleeps.
+    /// Whether a fixed node of the piece moves; such a piece never sleeps.
     pub is_driven: bool,
-    /// Angular momentum about the centre [kg m²/s].
+    /// Angular momentum about the centre of mass [kg m²/s].
     angular: DVec3,
-    /// Σ m x xᵀ, where x is the offset of a node from the centre of mass [kg m²].
+    /// Second moment of mass Σ m x xᵀ [kg m²]; x is the offset of a node from the centre of mass.
     spread: [DVec3; 3],
 }
 
 impl PieceMotion {
-    /// Adds a node at the offset x from the origin of the piece. [`PieceMotion::finish`] converts the sums to
-    /// the centre of mass.
+    /// Adds a node to the sums. `x` is the offset [m] of the node from the reference point of the piece.
+    /// [`PieceMotion::finish`] then converts the sums to moments about the centre of mass.
     #[inline(always)]
     fn add<D: Dim>(&mut self, x: DVec3, velocity: DVec3, mass: f64) {
         let (moment, impulse) = (x * mass, velocity * mass);
@@ -57,7 +58,8 @@ impl PieceMotion {
         }
     }
 
-    /// Converts the sums about `origin` to means, and to moments about the centre of mass.
+    /// Converts sums about the reference point `origin` [m] to means, and to moments about the centre of
+    /// mass.
     fn finish(&mut self, origin: DVec3) {
         let share = 1.0 / self.mass;
         let (from, impulse) = (self.centre * share, self.velocity);
@@ -73,7 +75,8 @@ impl PieceMotion {
         self.centre = origin + from;
     }
 
-    /// Returns the rigid motion that has the momentum of the piece; zero for a sleeping piece.
+    /// Returns the rigid motion that has the linear and angular momentum of the piece; zero for a sleeping
+    /// piece.
     fn rigid(&self) -> RigidMotion {
         if self.nodes == 0 {
             return RigidMotion::default();
@@ -85,11 +88,12 @@ impl PieceMotion {
     }
 }
 
-/// Returns the motion of every piece, by number; 0 for sleeping pieces.
+/// Returns the motion of every piece, by piece number; zero for sleeping pieces.
 pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
     let count = body.topology.pieces.list.len();
     let mut motions: IndexVec<PieceId, _> = vec![PieceMotion::default(); count].into();
-    // Sums are relative to a node of each piece: relative to a far world origin, they would lose precision.
+    // Reference point of each piece: its first awake node. Sums about the world origin, which may be far
+    // away, would lose precision.
     let mut origins: IndexVec<PieceId, _> = vec![DVec3::ZERO; count].into();
     let of_node = |id| body.topology.pieces.of_node(id);
     // Processes each run of nodes of one piece together, so that the sums of the piece stay in registers.
@@ -114,19 +118,20 @@ pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
     motions
 }
 
-/// Damping of a piece: rates [1/s], or after [`PieceDamping::over`] the fractions lost in one round.
+/// Damping of a piece, as rates [1/s]. [`PieceDamping::over`] converts them to the fractions of velocity that
+/// are lost in one damping round.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct PieceDamping {
-    /// Damping of the motion within the piece.
+    /// Damping of the vibration: of all motion relative to the rigid motion of the piece.
     pub swing: f32,
-    /// Damping of the angular velocity.
+    /// Damping of the angular velocity of the piece.
     pub spin: f32,
-    /// Damping of all motion: air drag, and drag by contacts.
+    /// Damping of all motion of the piece by the air and by contacts.
     pub drag: f32,
 }
 
 impl PieceDamping {
-    /// Converts rates to the fractions lost in a round of `duration` [s].
+    /// Converts rates to the fractions lost in a damping round of `duration` [s].
     pub fn over(self, duration: f32) -> Self {
         let share = |rate: f32| (rate * duration).min(1.0);
         Self {
@@ -137,8 +142,8 @@ impl PieceDamping {
     }
 }
 
-/// Damps each piece of a body by its entry of `slowing`, as fractions, and stores the rigid motions of all
-/// pieces.
+/// Damps the velocities of a body, and stores the rigid motion of each piece in the cache. `slowing` holds
+/// for each piece the fractions of velocity that the piece loses.
 pub fn slow_down<D: Dim>(
     body: &mut SoftBody<D>,
     motions: &[PieceMotion],
@@ -155,8 +160,9 @@ pub fn slow_down<D: Dim>(
     {
         return;
     }
-    // New velocity of a node: v ← kept v + pace(x). Of the centre's velocity the share 1 − drag remains, of
-    // the angular velocity (1 − drag)(1 − spin), and of the internal motion (1 − drag)(1 − swing).
+    // New velocity of a node at x: a fraction of its velocity plus the velocity at x of a rigid motion,
+    // `pace`. As a result, the velocity of the centre of mass is multiplied by 1 − drag, the angular velocity
+    // by (1 − drag)(1 − spin), and the vibration by (1 − drag)(1 − swing).
     let paces: Vec<_> = rigid
         .iter()
         .zip(slowing)

@@ -23,7 +23,7 @@ impl<D: Dim> SoftBody<D> {
         self.state.fixed[node] = from.iter().all(|&(old, _)| self.state.fixed[old]);
     }
 
-    /// Recomputes the masses of nodes.
+    /// Recomputes the masses and the inverse masses of nodes.
     pub(crate) fn weigh(&mut self, nodes: &[NodeId]) {
         for &id in nodes {
             self.state.mass[id] = self.mass_of(id);
@@ -68,7 +68,8 @@ impl<D: Dim> SoftBody<D> {
             if element.cell.level > 0 {
                 continue;
             }
-            // Octant of the voxel around its own low corner: the voxel is on the far side along every axis.
+            // Lattice point at the low corner of the voxel. Seen from this point, the voxel is on the high
+            // side along every axis, that is, in the last octant.
             let (around, octant) = (self.topology.connectivity.around(voxel), D::CORNERS - 1);
             let mut bare = 0;
             for axis in 0..D::N {
@@ -82,7 +83,7 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Updates which of `nodes` are breakable.
+    /// Updates the breakable nodes of the body after changes around `nodes`.
     pub(crate) fn find_breakable(&mut self, nodes: &[NodeId]) {
         let Topology {
             grid,

@@ -1,14 +1,16 @@
 //! Forces of all elements, evaluated eight at a time.
 //!
-//! Eight elements form a batch, one in each lane. Each lane performs the operations of the scalar formula in
-//! the scalar order, and nothing is summed across lanes, so the vector width of the machine does not change
-//! the result. Tests compare the forces with [`crate::soft_body::element_law`]. Each element writes its
-//! forces to entries of its own. The force on a node is the sum of its entries, in the order of the octants
-//! around the node. Therefore neither the number of threads nor the numbering of elements changes the result.
+//! Eight elements form a batch, one in each SIMD lane. Each lane performs the operations of the scalar
+//! formula in the scalar order, and nothing is summed across lanes. Therefore the vector width of the machine
+//! does not change the result. Tests compare the forces with [`crate::soft_body::element_law`].
 //!
-//! If a class has enough elements, its batches contain no other class. The remaining elements are pooled by
-//! their number of nodes; in a pooled batch, each lane has its own class data. About a fifth of a body's
-//! elements, of about a hundred classes, are pooled.
+//! Each element writes its forces to entries that no other element writes. The force on a node is the sum of
+//! the forces of its elements, in the order of the octants around the node. Therefore neither the number of
+//! threads nor the numbering of elements changes the result.
+//!
+//! If an element class has enough elements, its batches contain no other class. The remaining elements are
+//! pooled by their number of nodes; in a pooled batch, each lane has its own class data. About a fifth of a
+//! body's elements, of about a hundred classes, are pooled.
 
 mod batch;
 mod batch_assignment;
@@ -38,13 +40,13 @@ use plastic_kernel::PlasticFlowLimits;
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
-/// Smallest number of batches that are evaluated on several threads. Bodies with this many batches have about
+/// Smallest number of batches that are evaluated on several threads. A body with this many batches has about
 /// the smallest number of nodes that [`threads`] distributes over threads.
 #[cfg(feature = "parallel")]
 const LEAST_PARALLEL: usize = 1024;
 
-/// Padding after the last force, so that a load of four numbers that begins at the last force stays in
-/// bounds.
+/// Number of padding entries after the last force. A load of four numbers that begins at the last force then
+/// stays in bounds.
 const PAD: usize = 4;
 
 /// All elements of a body in batches, with their nodal forces.
@@ -52,34 +54,40 @@ const PAD: usize = 4;
 pub struct ElementBatches<D: Dim> {
     law: Law,
     moduli: Vec<Moduli>,
-    /// Flow limits of each material; `None` for elastic materials.
+    /// Plastic flow limits by material number − 1; `None` for elastic materials. Empty under
+    /// [`Law::Endo2004`].
     flows: Vec<Option<PlasticFlowLimits>>,
     voxel_size: f32,
     blocks: Vec<Batch>,
-    /// Batches with some vacant lanes, by the properties of their elements.
+    /// Indices of the batches that have both elements and vacant lanes, by the common properties of their
+    /// elements.
     open: BTreeMap<BatchKey, BTreeSet<u32>>,
-    /// Batches without elements, by number of nodes and by whether their lanes have different classes.
+    /// Indices of the batches without elements. The key is the number of nodes per element, and whether each
+    /// lane has class data of its own.
     empty: BTreeMap<(u32, bool), Vec<u32>>,
-    /// Start of the class data in `numbers`, for each class that has batches of its own.
+    /// Start in `numbers` of the data of each element class that has batches of its own, by the index of the
+    /// class.
     element_classes: BTreeMap<u32, u32>,
     numbers: Vec<f32>,
-    /// Class data of pooled batches, with a separate value for each lane.
+    /// Class data of pooled batches; each value is stored once for each lane.
     pooled: Vec<Eight>,
-    /// Batch and lane of each element, by id; the batch is [`VACANT`] if the element has none.
+    /// Index of the batch, and lane, of each element, by element id; the index is [`VACANT`] if no batch
+    /// contains the element.
     assigned: IndexVec<ElementId, (u32, u8)>,
     /// For each node, the indices in `forces` at which the forces of its elements begin, in the order of the
     /// octants around the node. Unused entries are 0, where `forces` holds a zero force.
     slots: IndexVec<NodeId, [u32; 8]>,
-    /// Node ids of all batches. The id of node k in lane l is at k · LANES + l after the first entry of the
-    /// batch.
+    /// Node ids of all batches. The id of node k of the element in lane l is k · LANES + l entries after the
+    /// first entry of the batch.
     nodes: Vec<u32>,
-    /// Forces of the elements on the nodes in `nodes`, in the same order, with D::N components each. Not
-    /// padded to four components: the padding would make up a quarter (3D) or half (2D) of the memory traffic
-    /// of a substep.
+    /// Forces [N] of the elements on the nodes in `nodes`, in the same order, with D::N components each.
+    /// Padding to four components would make up a quarter (3D) or half (2D) of the memory traffic of a
+    /// substep.
     forces: Vec<f32>,
-    /// Scratch memory that the next evaluation reuses without clearing.
+    /// Scratch memory of the kernel, kept so that the next evaluation need not allocate it.
     scratch: Option<Box<[Scratch; GROUP]>>,
-    /// State read from a file, kept until [`ElementBatches::restore`] assigns it to batches.
+    /// State of the elements read from a snapshot, until [`ElementBatches::restore`] assigns the elements to
+    /// batches.
     #[cfg(feature = "serde")]
     saved: Option<saved_states::SavedElementStates>,
     dim: PhantomData<D>,
@@ -90,15 +98,15 @@ pub struct ElementBatches<D: Dim> {
 pub struct VelocityUpdate<'a> {
     /// Nodes to update, ascending.
     pub nodes: &'a [NodeId],
-    /// Inverse mass of each node [1/kg], by id; 0 if the node is fixed.
+    /// Inverse mass of each node [1/kg], by id; 0 while the node is fixed or sleeps.
     pub inverse_mass: &'a [f32],
     /// Length of the substep [s].
     pub duration: f32,
-    /// Gravity [m/s²].
+    /// Gravity [m/s²], multiplied by the gravity scale of the body.
     pub gravity: Row,
 }
 
-/// Number of components of a rotation: cosine and sine, or a quaternion.
+/// Number of components of a stored rotation: cosine and sine in 2D, a quaternion in 3D.
 const fn parts<D: Dim>() -> usize {
     match D::N {
         2 => 2,
@@ -107,8 +115,8 @@ const fn parts<D: Dim>() -> usize {
 }
 
 impl<D: Dim> ElementBatches<D> {
-    /// Creates the forces of a body without elements. `elasticities[number - 1]` belongs to material
-    /// `number`; `voxel_size` is in metres.
+    /// Creates batches without elements. `elasticities[number - 1]` belongs to material `number`;
+    /// `voxel_size` is in metres.
     pub fn new(law: Law, elasticities: &[Elasticity], voxel_size: f32) -> Self {
         Self {
             law,
@@ -132,7 +140,7 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Law of the forces.
+    /// Law of the elastic forces.
     pub fn law(&self) -> Law {
         self.law
     }
@@ -142,8 +150,8 @@ impl<D: Dim> ElementBatches<D> {
         self.moduli = moduli::<D>(elasticities);
     }
 
-    /// Sets the plasticity of each material; must be called before elements are added. Ignored under
-    /// [`Law::Endo2004`].
+    /// Sets the plasticity of each material; `None` = elastic. Must be called before elements are added.
+    /// Ignored under [`Law::Endo2004`].
     pub fn set_plasticities(&mut self, plasticities: &[Option<Plasticity>]) {
         self.flows.clear();
         if self.law == Law::CorotationalVem {
@@ -152,8 +160,8 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Returns the plastic inverse G of an element ([`crate::soft_body::plasticity`]) by rows; `None` if its
-    /// material is elastic.
+    /// Returns the rows of the plastic inverse G of an element ([`crate::soft_body::plasticity`]); `None` if
+    /// the material of the element is elastic.
     pub fn plastic_inverse(&self, id: ElementId) -> Option<[Vec3; 3]> {
         let &(block, lane) = self.assigned.get(id.index())?;
         let block = self.blocks.get(block as usize)?;
@@ -161,7 +169,7 @@ impl<D: Dim> ElementBatches<D> {
         Some(undone.get(lane as usize))
     }
 
-    /// Sets the plastic inverse of an element.
+    /// Sets the plastic inverse of an element, given by rows.
     pub fn set_plastic_inverse(&mut self, id: ElementId, undone: [Vec3; 3]) {
         let (block, lane) = self.assigned[id];
         if let Some(own) = &mut self.blocks[block as usize].undone {
@@ -169,7 +177,7 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Whether any material is plastic.
+    /// Returns whether any material is plastic.
     pub fn has_plastic(&self) -> bool {
         self.flows.iter().any(Option::is_some)
     }
@@ -218,8 +226,8 @@ impl<D: Dim> ElementBatches<D> {
         let mut forces = &mut self.forces[LANES * D::N..];
         let mut first = LANES;
         self.blocks.chunks_mut(GROUP).map(move |blocks| {
-            // Batches are stored in the order of their forces, so the last batch ends the forces of the
-            // group.
+            // Forces are stored in the order of the batches, so the forces of the group end with those of its
+            // last batch.
             let end = blocks.last().map_or(first, Batch::end);
             let (own, others) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
             let group = Group {
@@ -233,13 +241,14 @@ impl<D: Dim> ElementBatches<D> {
         })
     }
 
-    /// Force [N] on a node in the last evaluation.
+    /// Elastic force [N] on a node in the last evaluation: the sum of the forces of its elements.
     #[inline]
     pub fn force_on(&self, node: NodeId) -> Row {
         on_widest_lanes!(simd => self.force_by(simd, node))
     }
 
-    /// Forces [N] of the elements on a node in the last evaluation, in the order of the octants around it.
+    /// Elastic force [N] of each element on a node in the last evaluation, in the order of the octants around
+    /// the node.
     #[inline]
     pub fn parts_on(&self, node: NodeId) -> impl Iterator<Item = Row> + '_ {
         let places = self.slots[node].iter();
@@ -251,7 +260,7 @@ impl<D: Dim> ElementBatches<D> {
         })
     }
 
-    /// Sum of the squared forces of the elements on a node in the last evaluation [N²].
+    /// Sum of the squared forces [N²] of the elements on a node in the last evaluation.
     #[inline(always)]
     pub fn squares_on<S: Simd>(&self, simd: S, node: NodeId) -> f32 {
         let slots = &self.slots[node][..D::CORNERS];
@@ -266,10 +275,10 @@ impl<D: Dim> ElementBatches<D> {
         sum
     }
 
-    /// Rotation of an element in the last evaluation, by rows.
+    /// Rotation matrix of an element in the last evaluation, by rows.
     pub fn rotation(&self, id: ElementId) -> [Vec3; 3] {
         let turned = self.rotation_of(id);
-        // Stored as cosine and sine in 2D, as a quaternion in 3D.
+        // Rotations are stored as cosine and sine in 2D, as quaternions in 3D.
         if D::N == 2 {
             let [cosine, sine, ..] = turned;
             return [
@@ -284,13 +293,14 @@ impl<D: Dim> ElementBatches<D> {
         })
     }
 
-    /// Whether an element is in a batch.
+    /// Returns whether a batch contains the element.
     pub fn has(&self, id: ElementId) -> bool {
         let assigned = self.assigned.get(id.index());
         assigned.is_some_and(|&(block, _)| block != VACANT)
     }
 
-    /// Sets the rotation of a 3D element, as a quaternion, from which the next evaluation starts.
+    /// Sets the rotation of a 3D element to a unit quaternion (x, y, z, w). The iteration of the next
+    /// evaluation starts from this rotation.
     pub fn set_rotation(&mut self, id: ElementId, turned: [f32; 4]) {
         let (block, lane) = self.assigned[id];
         let rotation = &mut self.blocks[block as usize].rotation;
@@ -299,8 +309,8 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Rotates all elements, and the forces of the last evaluation. Rotations are stored as cosine and sine
-    /// in 2D, as quaternions in 3D.
+    /// Turns the rotations of all elements, and the forces of the last evaluation, by `rotation`. Rotations
+    /// of elements are stored as cosine and sine in 2D, as quaternions in 3D.
     pub fn rotate(&mut self, rotation: Rotation) {
         for block in &mut self.blocks {
             for lane in 0..LANES {
@@ -324,15 +334,15 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Number of awake elements that were inverted in the last evaluation. Always 0 under [`Law::Endo2004`],
-    /// which does not check for inversion.
+    /// Number of awake elements with negative volume, that is, turned inside out, in the last evaluation.
+    /// Always 0 under [`Law::Endo2004`], which does not check for inversion.
     pub fn inverted_count(&self) -> u32 {
         let awake = self.blocks.iter().filter(|block| !block.is_idle());
         let inverted = |block: &Batch| (block.inverted & !block.vacant).count_ones();
         awake.map(inverted).sum()
     }
 
-    /// Applies the elastic forces and gravity of one substep to velocities [m/s].
+    /// Adds the velocity change of one substep by elastic forces and gravity to velocities [m/s].
     pub fn kick(&self, kick: &VelocityUpdate, velocity: &mut [Row]) {
         threads::map(threads::rows(kick.nodes, [velocity]), |rows| {
             on_widest_lanes!(simd => self.kick_by(simd, kick, rows));
@@ -359,7 +369,7 @@ impl<D: Dim> ElementBatches<D> {
             Some(&(block, lane)) if block != VACANT => self.blocks[block as usize]
                 .rotation
                 .map(|part| part[lane as usize]),
-            // Identity, as cosine and sine or as a quaternion.
+            // Identity: (cosine, sine) in 2D, quaternion (x, y, z, w) in 3D.
             _ if D::N == 2 => [1.0, 0.0, 0.0, 0.0],
             _ => [0.0, 0.0, 0.0, 1.0],
         }
@@ -381,8 +391,8 @@ mod tests {
     use crate::topology::grid::VoxelGrid;
     use crate::topology::mesh::Mesh;
 
-    /// Checks that the lanes of `simd` give the same bits as the widest lanes of this machine, on a body with
-    /// every kind of batch.
+    /// Checks that the lanes of `simd` give the same bits as the widest lanes of this machine. The test body
+    /// has batches of a single class and pooled batches.
     fn check_same_bits<D: Dim, S: Simd>(law: Law, simd: S) {
         let grid = VoxelGrid::<D>::ball(24, 1.0).unwrap();
         let connectivity = Connectivity::new(&grid);
@@ -438,9 +448,10 @@ mod tests {
         assert_eq!(by_best, by_other);
     }
 
-    /// Regression test of two faults. If a batch had sleeping and awake elements, the sleeping ones were
-    /// evaluated, too, so waking depended on the distribution over batches. A new element of a batch also
-    /// kept the forces of the element that was in its lane before.
+    /// Checks that sleeping elements keep their rotations and forces, and that an element added to a batch
+    /// starts with zero forces. Regression test of two faults: a batch with both sleeping and awake elements
+    /// evaluated all of them, and an added element kept the forces of the element that had used its lane
+    /// before.
     fn check_sleepers<D: Dim>() {
         let grid = VoxelGrid::<D>::ball(16, 1.0).unwrap();
         let connectivity = Connectivity::new(&grid);
@@ -508,16 +519,16 @@ mod tests {
     #[test]
     fn lanes_of_all_widths_give_same_bits() {
         for law in [Law::CorotationalVem, Law::Endo2004] {
-            // Skipped in debug builds, in which compiling the scalar lanes takes four minutes and several
-            // gigabytes.
+            // Scalar lanes are not tested in debug builds, in which compiling them takes four minutes and
+            // several gigabytes.
             #[cfg(not(debug_assertions))]
             {
                 let plain = fearless_simd::Fallback::new();
                 check_same_bits::<Dim2, _>(law, plain);
                 check_same_bits::<Dim3, _>(law, plain);
             }
-            // Compares only narrower lanes, because the reference already has the widest lanes of this
-            // machine.
+            // Tests only lanes narrower than the widest lanes of this machine, which give the reference
+            // result.
             #[cfg(target_arch = "x86_64")]
             {
                 let level = fearless_simd::Level::baseline();

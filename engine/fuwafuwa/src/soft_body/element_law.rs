@@ -1,9 +1,10 @@
 //! Forces of one element in double precision: the reference for the vectorised implementation.
 //!
-//! Two laws are available. [`Law::Endo2004`] is that of the paper: the rest shape, rotated so that its
-//! moments balance [Endo 2004, Eq. 1], pulls each node back in proportion to its offset. This law is simple
-//! and robust, but fails the patch test as soon as an element has mid nodes. [`Law::CorotationalVem`], the
-//! default, is a corotational virtual element [Beirao da Veiga 2013]:
+//! Two laws are available. [`Law::Endo2004`] is the law of the paper. It rotates the rest shape so that the
+//! moments of the forces balance [Endo 2004, Eq. 1], and pulls each node towards its position in the rotated
+//! shape, in proportion to the distance. This law is simple and robust, but fails the patch test as soon as
+//! an element has mid nodes. [`Law::CorotationalVem`], the default, is a corotational virtual element [Beirao
+//! da Veiga 2013]:
 //!
 //! ```text
 //! F = (1/V) Σ x_i b_iᵀ      R = its rotation      J = det F
@@ -12,8 +13,13 @@
 //! f_i = −P b_i − k (w_i h_i − S b_i / V)           k = α β Y s^(d−2),  w_i = 2^d V_i / s^d
 //! ```
 //!
-//! α makes a whole cell bend correctly, β other classes: see [`ElementClass::hourglass`]. In 2D the law is plane
-//! strain with 1 m of depth: the same formulas with F₃₃ = R₃₃ = 1.
+//! Node i has the position x_i, the rest offset r_i from the volume centroid, the gradient b_i and the volume
+//! V_i. The element has the centroid c, the volume V and the width s; d is the number of dimensions. Y, μ and
+//! λ are Young's modulus and Lamé's parameters. J_min is [`MIN_VOLUME_RATIO`], and k_J equals Y.
+//!
+//! The constant α, [`Dim::HOURGLASS`], makes a plain element bend with the right stiffness. The factor β,
+//! [`ElementClass::hourglass`], does the same for the other element classes. In 2D the law is plane strain
+//! with 1 m of depth: the same formulas with F₃₃ = R₃₃ = 1.
 
 use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
@@ -38,8 +44,8 @@ hash_state! { enum Law { Endo2004, CorotationalVem } }
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Elasticity {
-    /// Young's modulus Y [Pa]; about 5000 for a game body. The simulation diverges if it is too high for the
-    /// substep.
+    /// Young's modulus Y [Pa]; about 5000 for a game body. A world lowers it if its substep would otherwise
+    /// be unstable: see [`SoftBody::stiffness_scale`](crate::SoftBody::stiffness_scale).
     pub young: f64,
     /// Poisson's ratio ν, 0 to 0.45: lateral expansion under compression.
     pub poisson: f64,
@@ -47,16 +53,16 @@ pub struct Elasticity {
 
 hash_state! { struct Elasticity { young, poisson } }
 
-/// Volume ratio J below which an element resists further compression, regardless of its material. A higher
-/// ratio would stiffen soft contacts. With a lower one, strong contacts would invert elements before the
+/// Volume ratio det F below which an element of any material resists further compression. A higher ratio
+/// would stiffen soft contacts. With a lower ratio, strong contacts would invert elements before the
 /// resistance sets in.
 pub const MIN_VOLUME_RATIO: f64 = 0.4;
 
 impl Elasticity {
-    /// Checks the constants.
+    /// Creates elastic constants: Young's modulus `young` [Pa], and Poisson's ratio `poisson` from 0 to 0.45.
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] if one is out of range or not a number.
+    /// [`Error::InvalidParameter`] if a constant is out of range or not a number.
     pub fn new(young: f64, poisson: f64) -> Result<Self, Error> {
         let is_valid = young.is_finite() && young > 0.0;
         require(is_valid, "young", "positive and finite [Pa]", young)?;
@@ -81,7 +87,8 @@ pub type Matrix = [DVec3; 3];
 
 pub(crate) const IDENTITY: Matrix = DVec3::AXES;
 
-/// Returns the force [N] of an element of width `size` [m] on each of its nodes, at `positions` [m].
+/// Returns the elastic force [N] that an element exerts on each of its nodes. The element is `size` [m] wide;
+/// `positions` are those of its nodes [m].
 ///
 /// # Panics
 /// If the number of positions is not the number of nodes of the element class.
@@ -104,8 +111,8 @@ pub fn forces<D: Dim>(
     }
 }
 
-/// Returns the forces of [`Law::Endo2004`]: f_i = (Y V d / Σ|R0|²) (M R0_i − r_i), with offsets from the mean
-/// of the nodes.
+/// Returns the nodal forces [N] of [`Law::Endo2004`]: a stiffness times the vector from each node to its goal
+/// position.
 fn endo<D: Dim>(
     elasticity: Elasticity,
     element_class: &ElementClass<D>,
@@ -116,7 +123,9 @@ fn endo<D: Dim>(
     apart.into_iter().map(|d| d * stiffness).collect()
 }
 
-/// Returns the stiffness Y V d / Σ|R0|², and the vector M R0_i − r_i from each node to its goal position.
+/// Returns the stiffness Y V d / Σ|R0_i|² [N/m], and the vector M R0_i − r_i [m] from each node i to its goal
+/// position. R0_i and r_i are the offsets of the node from the mean of all nodes, at rest and now; M is the
+/// best-fit rotation. Y is Young's modulus, V the volume and d the number of dimensions.
 pub(crate) fn shape_matching_offsets<D: Dim>(
     elasticity: Elasticity,
     element_class: &ElementClass<D>,
@@ -136,7 +145,8 @@ pub(crate) fn shape_matching_offsets<D: Dim>(
         add_outer(&mut moment, *x, *r);
         spread += r.dot(*r);
     }
-    // In 2D this entry would be 0. A positive one makes the best rotation one about the third axis.
+    // In 2D, the third diagonal entry would be 0. A positive entry makes the best-fit rotation a rotation
+    // about the third axis.
     (D::N..3).for_each(|axis| moment[axis][axis] = spread);
     let rotation = rotation_of(&moment);
     let stiffness = elasticity.young * volume_of(element_class, half) * D::N as f64 / spread;
@@ -155,7 +165,7 @@ fn patch_exact<D: Dim>(
     forces_of_stress(elasticity, &stress, element_class, size, positions)
 }
 
-/// Returns the forces of a stress [Pa], plus the stabilisation of the hourglass modes.
+/// Returns the nodal forces [N] of a stress [Pa], plus the forces that resist the hourglass modes.
 pub(crate) fn forces_of_stress<D: Dim>(
     elasticity: Elasticity,
     stress: &Matrix,
@@ -187,13 +197,14 @@ pub(crate) fn forces_of_stress<D: Dim>(
         .collect()
 }
 
-/// Returns the vector b of a node, which contributes x bᵀ to V F.
+/// Returns the gradient b of a node. The sum of x bᵀ over the nodes at positions x is V F, with the volume V
+/// and the deformation gradient F of the element.
 fn gradient_of<D: Dim>(element_class: &ElementClass<D>, size: f64, node: usize) -> DVec3 {
     let half = 0.5 * size;
     element_class.gradients[node] * (volume_scale::<D>(half) / half)
 }
 
-/// Returns the deformation gradient and the volume centroid.
+/// Returns the deformation gradient, and the volume centroid [m] in the present shape.
 pub(crate) fn deformation_of<D: Dim>(
     element_class: &ElementClass<D>,
     size: f64,
@@ -211,7 +222,8 @@ pub(crate) fn deformation_of<D: Dim>(
     (deformation, centre)
 }
 
-/// Returns the stiffness k of the hourglass modes, and the product w h of each node.
+/// Returns the stiffness k of the hourglass modes, and the product w h of each node: volume weight times
+/// deviation [m] from the affine motion of the element.
 pub(crate) fn hourglass<D: Dim>(
     elasticity: Elasticity,
     element_class: &ElementClass<D>,
@@ -230,7 +242,7 @@ pub(crate) fn hourglass<D: Dim>(
     (stiffness, motion.collect())
 }
 
-/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation.
+/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation gradient.
 pub(crate) fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
     let rotation = rotation_of(deformation);
     let stretch: f64 = (0..3).map(|i| rotation[i].dot(deformation[i])).sum();
@@ -249,30 +261,31 @@ pub(crate) fn stress(elasticity: Elasticity, deformation: &Matrix) -> Matrix {
     stress
 }
 
-/// Returns the rotation that balances the moments of a deformation [Endo 2004, Eq. 1].
+/// Returns the rotation R that balances the moments of a deformation gradient F [Endo 2004, Eq. 1].
 ///
-/// Each iteration turns R by ω from (√3‖F‖·I − S) ω = axial(F Rᵀ), where S is the symmetric part of F Rᵀ.
-/// Unlike in a plain Newton step, the matrix is positive definite for every F. Unlike the usual division by
-/// |tr S| [Mueller 2016], the step does not lag behind a spinning body. The iteration ends if the turn is
-/// below rounding.
+/// Each iteration turns R by the rotation vector ω from (√3‖F‖·I − S) ω = axial(F Rᵀ), where S is the
+/// symmetric part of F Rᵀ. Unlike in a plain Newton step, the matrix is positive definite for every F. Unlike
+/// the usual division by |tr S| [Mueller 2016], the step does not lag behind a spinning body. The iteration
+/// ends if the turn is below rounding.
 ///
-/// Moments also balance if R is half a turn off, about any axis, but tr RᵀF is then not maximal. In that case
-/// the iteration restarts from R turned by half a turn about each axis. One of these starts is at most 120°
-/// off.
+/// Moments also balance if R differs from the best rotation by half a turn about some axis, but tr RᵀF is
+/// then not maximal. In that case the iteration restarts three times, from half a turn about each axis. At
+/// least one of these starts is within 120° of the best rotation.
 pub fn rotation_of(deformation: &Matrix) -> Matrix {
     from_quaternion(rotation_quaternion(deformation))
 }
 
-/// Returns the rotation of a deformation as a quaternion, but only if the rotation `near` differs from it by
-/// about a quarter turn or more. The iterations of the kernel would not correct such a difference.
+/// Returns the rotation of a deformation gradient as a quaternion, but only if the rotation `near` differs
+/// from it by about a quarter turn or more. The iterations of the force kernel do not reliably correct such a
+/// difference.
 pub fn rotation_if_far_from(near: &Matrix, deformation: &Matrix) -> Option<[f64; 4]> {
     if is_greatest(near, deformation) {
         return None;
     }
     let turned = rotation_quaternion(deformation);
     let gain = trace(&from_quaternion(turned), deformation) - trace(near, deformation);
-    // In an unstrained element, a rotation that is off by the angle a lowers tr RᵀF by 2 − 2 cos a, and ‖F‖ =
-    // √3. The threshold ‖F‖ then corresponds to 82°.
+    // In an unstrained element, a rotation that is wrong by the angle a lowers tr RᵀF by 2 − 2 cos a, and ‖F‖
+    // = √3. There, the threshold ‖F‖ corresponds to a = 82°.
     (gain > norm(deformation)).then_some(turned)
 }
 
@@ -282,7 +295,7 @@ fn rotation_quaternion(deformation: &Matrix) -> [f64; 4] {
     if is_greatest(&from_quaternion(turned), deformation) {
         return turned;
     }
-    // In 2D only the half turn about the third axis needs to be tried.
+    // In 2D, only half a turn about the third axis needs to be tried.
     let [first, second, third] = deformation;
     let is_flat = [first.z, second.z] == [0.0; 2] && *third == IDENTITY[2];
     for axis in if is_flat { 2..3 } else { 0..3 } {
@@ -296,7 +309,7 @@ fn rotation_quaternion(deformation: &Matrix) -> [f64; 4] {
     turned
 }
 
-/// Runs the iteration of [`rotation_of`] from a quaternion.
+/// Runs the iteration of [`rotation_of`] from the quaternion `turned`.
 fn turn_from(mut turned: [f64; 4], deformation: &Matrix) -> [f64; 4] {
     let scale = 3f64.sqrt() * norm(deformation);
     for _ in 0..100 {
@@ -330,8 +343,8 @@ fn turn_from(mut turned: [f64; 4], deformation: &Matrix) -> [f64; 4] {
     turned
 }
 
-/// Returns whether the rotation R is the best fit to the deformation F: no eigenvalue of F Rᵀ exceeds the
-/// trace of F Rᵀ.
+/// Returns whether the rotation R is surely the best fit to the deformation gradient F: tr RᵀF exceeds ‖F‖,
+/// which no eigenvalue of F Rᵀ exceeds.
 fn is_greatest(rotation: &Matrix, deformation: &Matrix) -> bool {
     trace(rotation, deformation) > norm(deformation)
 }
@@ -365,7 +378,7 @@ fn from_quaternion([x, y, z, w]: [f64; 4]) -> Matrix {
     ]
 }
 
-/// Turns a quaternion q by the small rotation vector ω [rad] in world axes: normalise((ω/2, 1) q).
+/// Turns the rotation q by the small rotation vector ω [rad] in world axes: q ← normalise((ω/2, 1) q).
 fn turn_quaternion([x, y, z, w]: [f64; 4], turn: DVec3) -> [f64; 4] {
     let [a, b, c] = (turn * 0.5).to_array();
     let next = [
@@ -404,8 +417,8 @@ fn add_outer(m: &mut Matrix, a: DVec3, b: DVec3) {
 mod tests {
     use super::*;
 
-    /// Regression test: the rotation iteration did not move from a start that was half a turn off, and the
-    /// body tore itself apart.
+    /// Regression test: the iteration did not leave a start that differed from the best rotation by half a
+    /// turn, and the body tore itself apart.
     #[test]
     fn rotation_of_finds_half_turn_about_any_axis() {
         let axes = [
@@ -421,7 +434,7 @@ mod tests {
             for w in [0.0, 1e-9, 1e-3, 0.3] {
                 let length = f64::sqrt(1.0 + w * w);
                 let turned = from_quaternion([x, y, z, w].map(|k| k / length));
-                // Product of the rotation and the stretch, by rows.
+                // The deformation gradient is the product of the rotation and the stretch, by rows.
                 let deformation = turned.map(|row| {
                     let rows = (0..3).map(|k| stretch[k] * row[k]);
                     rows.sum()

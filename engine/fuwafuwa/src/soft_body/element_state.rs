@@ -14,10 +14,11 @@ use glam::DVec3;
 /// State of an element: deformation, strain, stress and stored energy.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct ElementState {
-    /// Deformation gradient F by rows, including plastic deformation.
+    /// Deformation gradient F by rows, elastic and plastic part together.
     pub deformation: Matrix,
-    /// Biot strain, the symmetric part of RᵀF minus 1, along the axes of the body at rest: 0.1 is a stretch
-    /// by a tenth.
+    /// Elastic Biot strain along the axes of the undeformed body: the symmetric part of RᵀF minus the
+    /// identity, where F is only the elastic part of the deformation gradient and R its rotation. 0.1 is a
+    /// stretch by a tenth.
     pub strain: Matrix,
     /// Cauchy stress [Pa] along the axes of the world; 0 under [`Law::Endo2004`], which defines no stress.
     pub stress: Matrix,
@@ -25,8 +26,9 @@ pub struct ElementState {
     pub energy: f64,
 }
 
-/// Returns the state of an element of width `size` [m] with nodes at `positions` [m]. The forces that
-/// [`crate::soft_body::element_law::forces`] returns are the negative gradient of the energy in this state.
+/// Returns the state of an elastic element that is `size` [m] wide and has its nodes at `positions` [m]. The
+/// forces that [`crate::soft_body::element_law::forces`] returns are the negative gradient of the energy in
+/// this state.
 ///
 /// # Panics
 /// If the number of positions is not the number of nodes of the element class.
@@ -41,8 +43,8 @@ pub fn element_state<D: Dim>(
     element_state_plastic(law, elasticity, &IDENTITY, element_class, size, positions)
 }
 
-/// Returns the state of an element with plastic deformation. `undone` is the plastic inverse G of
-/// [`crate::soft_body::plasticity`]; the strain is the elastic part.
+/// Returns the state of an element that is `size` [m] wide and has its nodes at `positions` [m]. `undone` is
+/// the plastic inverse G of [`crate::soft_body::plasticity`].
 ///
 /// # Panics
 /// If the number of positions is not the number of nodes of the element class.
@@ -119,16 +121,16 @@ pub fn element_state_plastic<D: Dim>(
 /// included.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Kinetic energy.
+    /// Kinetic energy [J].
     pub kinetic: f64,
-    /// Elastic energy.
+    /// Elastic energy [J].
     pub elastic: f64,
-    /// Potential energy in the given gravity; 0 at the origin.
+    /// Potential energy [J] in the gravity passed to [`SoftBody::energies`]; 0 for mass at the origin.
     pub gravitational: f64,
 }
 
 impl Energy {
-    /// Sum of all parts [J].
+    /// Sum of kinetic, elastic and gravitational energy [J].
     pub fn total(self) -> f64 {
         self.kinetic + self.elastic + self.gravitational
     }
@@ -136,8 +138,8 @@ impl Energy {
 
 impl<D: Dim> SoftBody<D> {
     /// Returns the strain, stress and energy of an element, or `None` if the element was removed. Computed in
-    /// double precision from the positions of the nodes, with the reduced stiffness of the body (see
-    /// [`SoftBody::stiffness_scale`]).
+    /// double precision from the positions of the nodes. Young's modulus is multiplied by
+    /// [`SoftBody::stiffness_scale`].
     #[inline(never)]
     pub fn element_state(&self, id: ElementId) -> Option<ElementState> {
         let element = self.topology.mesh.element(id)?;
@@ -159,22 +161,23 @@ impl<D: Dim> SoftBody<D> {
         ))
     }
 
-    /// Plastic inverse G of an element.
+    /// Plastic inverse G of an element, by rows; the identity if the material is elastic.
     fn undone(&self, id: ElementId) -> Matrix {
         let undone = self.state.blocks.plastic_inverse(id);
         undone.map_or(IDENTITY, |undone| undone.map(|row| row.as_dvec3()))
     }
 
-    /// Returns the plastic strain of an element, or `None` if the element was removed. It is the largest
-    /// permanent compression along any axis: 0 = none, 0.5 = to 1/1.5 of the width. Plastic flow preserves the
-    /// volume, so in 2D the other axis is then stretched to 1.5 times its width.
+    /// Returns the plastic strain of an element, or `None` if the element was removed. The plastic strain is
+    /// 0 without permanent deformation. A strain of 0.5 means that the most compressed axis has shrunk
+    /// permanently to 1/1.5 of its length. Plastic flow preserves volume, so in 2D the other axis is then
+    /// stretched to 1.5 times its length.
     pub fn plastic_strain(&self, id: ElementId) -> Option<f32> {
         self.topology.mesh.element(id)?;
         let most = 1.0 / plastic_stiffness_factor::<D>(&self.undone(id));
         Some((most.sqrt() - 1.0).max(0.0) as f32)
     }
 
-    /// Damage of a node: from 0, intact, to 1, at which the node is split.
+    /// Damage of a node, from 0 (intact) to 1, at which the node is split.
     ///
     /// # Panics
     /// If the id was never used.
@@ -182,7 +185,8 @@ impl<D: Dim> SoftBody<D> {
         self.state.damage[node]
     }
 
-    /// Returns the energy of each piece, by number, under `gravity` [m/s²]; 0 for removed pieces.
+    /// Returns the energy of each piece, by number. Gravity is `gravity` [m/s²] times the gravity scale of
+    /// the body. 0 for removed pieces.
     ///
     /// ```
     /// use fuwafuwa::{Dim2, Material, SoftBody, Vec2, VoxelGrid};
@@ -229,7 +233,8 @@ mod tests {
     use crate::topology::grid::VoxelGrid;
     use glam::{Vec2, Vec3};
 
-    /// Displaces every node a little, each differently.
+    /// Returns a ball, shrunk by the fraction `amount`, with nodes displaced by a bending field in proportion
+    /// to `amount`.
     fn crooked<D: Dim>(amount: f32) -> SoftBody<D> {
         let grid = VoxelGrid::<D>::ball(12, 1.0).unwrap();
         let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
@@ -288,7 +293,8 @@ mod tests {
         }
     }
 
-    /// Stretches a body by a twentieth along the first axis, and rotates it.
+    /// Checks the state of the elements of a body that is stretched by a twentieth along the first axis, then
+    /// rotated by one radian.
     fn check_stretch<D: Dim>() {
         let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();
         let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();

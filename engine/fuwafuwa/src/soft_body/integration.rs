@@ -19,7 +19,7 @@ impl<D: Dim> SoftBody<D> {
         self.drift(duration, 0.0);
     }
 
-    /// Applies elastic forces and gravity over `duration` [s] to the velocities.
+    /// Adds to velocities the change that elastic forces and gravity [m/s²] cause in `duration` [s].
     pub(crate) fn push(&mut self, duration: f32, gravity: Vec3) {
         self.refresh_awake();
         if std::mem::take(&mut self.state.placed) {
@@ -37,7 +37,7 @@ impl<D: Dim> SoftBody<D> {
         self.state.blocks.kick(&kick, &mut self.state.velocity);
     }
 
-    /// Applies an acceleration field [m/s²] over `duration` [s] to the velocities.
+    /// Adds to velocities the change that an acceleration field [m/s²] causes in `duration` [s].
     pub(crate) fn pull(&mut self, duration: f32, field: &dyn Fn(D::Vector) -> D::Vector) {
         for &id in &self.cache.awake {
             let point = D::Vector::from_vec3(self.state.position[id].xyz());
@@ -50,10 +50,10 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Recomputes the rotations of elements if they may be far from the orientation of the nodes, because the
-    /// elements are new or nodes were placed. The iteration in the force evaluation follows only small turns,
-    /// and does not correct a rotation that is half a turn off. Has no effect in 2D, where the force
-    /// evaluation finds the rotation directly.
+    /// Recomputes the rotations of elements that are new or whose nodes were placed, because such a rotation
+    /// may be far from the orientation of the nodes. The iteration in the force evaluation follows only small
+    /// turns, and does not correct a rotation that is wrong by half a turn. Has no effect in 2D, where the
+    /// force evaluation computes the rotation directly.
     pub(crate) fn settle(&mut self, elements: &[ElementId]) {
         if D::N == 2 {
             return;
@@ -77,8 +77,9 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Moves every awake node by its velocity. Also extrapolates positions by `lead` [s] for the next forces.
-    /// The extrapolation is relative to the rigid motion of the piece, so that pure rotation is not damped.
+    /// Moves every awake node by its velocity for `duration` [s]. Also extrapolates the positions by `lead`
+    /// [s], for the next evaluation of forces. The extrapolation uses velocities relative to the rigid motion
+    /// of the piece, so that pure rotation is not damped.
     ///
     /// No node moves by more than a voxel per substep. Faster nodes would invert elements, and the forces
     /// would grow from substep to substep. Returns the distance that the fastest node has moved [m].
@@ -96,9 +97,9 @@ impl<D: Dim> SoftBody<D> {
         ];
         let rows = threads::rows(&self.cache.awake, lists.map(|rows| rows.as_mut_slice()));
         let fastest = threads::map(rows, move |rows| {
-            // Slices of equal length need only one bounds check per node, and values in local variables are
-            // not reloaded for each node. This matters because small bodies spend about a tenth of their time
-            // in this loop.
+            // Three slices of one length need only one bounds check per node, and local variables are not
+            // reloaded for each node. This matters because small bodies spend about a tenth of their time in
+            // this loop.
             let count = rows.lists[0].len();
             let [positions, velocities, ahead] = rows.lists.map(|list| &mut list[..count]);
             let mut fastest = 0.0f32;
@@ -106,7 +107,8 @@ impl<D: Dim> SoftBody<D> {
                 let node = id.index() - rows.first;
                 let mut velocity = velocities[node];
                 let squared = inner::<D>(velocity, velocity);
-                // A comparison is faster than `max`, with which each node would wait for the previous one.
+                // A comparison is faster than `f32::max`, with which each iteration of the loop would wait
+                // for the previous one.
                 if squared > fastest {
                     fastest = squared;
                 }
@@ -125,7 +127,7 @@ impl<D: Dim> SoftBody<D> {
         fastest.sqrt().min(top_speed) * duration
     }
 
-    /// Updates the list of awake nodes.
+    /// Recomputes the list of awake nodes if it is outdated.
     pub(crate) fn refresh_awake(&mut self) {
         if !self.cache.awake_is_stale {
             return;

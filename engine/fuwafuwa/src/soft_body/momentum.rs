@@ -1,21 +1,21 @@
-//! Linear and angular momentum of a set of nodes, and the rigid motion with a given momentum.
+//! Linear and angular momentum of a set of nodes, and the rigid motion that has a given momentum.
 
 use crate::foundation::dim::Dim;
 use crate::math::twist::Twist;
 use crate::soft_body::element_forces::Row;
 use glam::DVec3;
 
-/// Momentum of mass points about a common centre, in double precision.
+/// Momentum of mass points about a centre, in double precision.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Momentum {
-    /// Σ m v [kg m/s].
+    /// Linear momentum Σ m v [kg m/s].
     pub linear: DVec3,
-    /// Σ m x × v [kg m²/s].
+    /// Angular momentum Σ m x × v [kg m²/s]; x is the offset of a point from the centre.
     pub angular: DVec3,
 }
 
 impl Momentum {
-    /// Computes the momentum of points (position, velocity, mass) about `centre`.
+    /// Computes the momentum of points (position [m], velocity [m/s], mass [kg]) about `centre` [m].
     pub fn of(points: impl Iterator<Item = (Row, Row, f32)>, centre: DVec3) -> Self {
         let mut sum = Self::default();
         for (position, velocity, mass) in points {
@@ -36,7 +36,7 @@ impl Momentum {
     }
 }
 
-/// Rigid velocity field with the angular velocity `spin`: v(x) = `velocity` + `spin` × (x − `centre`).
+/// Velocity field of a rigid body: v(x) = `velocity` + `angular_velocity` × (x − `centre`).
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct RigidMotion {
     velocity: DVec3,
@@ -49,12 +49,13 @@ pub struct RigidMotion {
 pub(crate) struct RigidMotionF32 {
     velocity: Row,
     centre: Row,
-    /// Columns of the matrix of the cross product with the angular velocity.
+    /// Columns of the matrix that maps an offset from the centre to the cross product of the angular velocity
+    /// with the offset.
     spin: [Row; 3],
 }
 
 impl RigidMotionF32 {
-    /// Velocity at a point.
+    /// Velocity [m/s] of the rigid motion at a position [m].
     #[inline(always)]
     pub fn at<D: Dim>(&self, position: Row) -> Row {
         let from = position - self.centre;
@@ -67,8 +68,8 @@ impl RigidMotionF32 {
 }
 
 impl RigidMotion {
-    /// Returns the rigid motion with which the points have the momentum `wanted`, relative to `centre`, their
-    /// centre of mass.
+    /// Returns the rigid motion that gives points (position, mass) the momentum `wanted` about `centre`,
+    /// which must be their centre of mass.
     pub fn with_momentum(
         points: impl Iterator<Item = (Row, f32)>,
         centre: DVec3,
@@ -87,16 +88,16 @@ impl RigidMotion {
         Self::of_spin(velocity, centre, &wanted.angular, &inertia)
     }
 
-    /// Returns the motion with a given velocity of the centre. The angular velocity follows from the angular
-    /// momentum and the inertia about the centre.
+    /// Returns the rigid motion with a given velocity of the centre. The angular velocity follows from the
+    /// angular momentum and the inertia about the centre.
     pub(crate) fn of_spin(
         velocity: DVec3,
         centre: DVec3,
         angular: &DVec3,
         inertia: &[DVec3; 3],
     ) -> Self {
-        // Adds a little to the inertia, because that of collinear points is 0 about their line and could not
-        // be inverted.
+        // Adds a little to the inertia. The inertia of collinear points about their common line is 0, and
+        // could not be inverted.
         let mut inertia = *inertia;
         let little = 1e-9 * (inertia[0][0] + inertia[1][1] + inertia[2][2]) + f64::MIN_POSITIVE;
         (0..3).for_each(|k| inertia[k][k] += little);
@@ -117,7 +118,7 @@ impl RigidMotion {
         }
     }
 
-    /// Velocity of the centre, and angular velocity about it.
+    /// Returns the velocity of the centre [m/s], and the angular velocity [rad/s].
     pub(crate) fn velocity(&self) -> Twist {
         Twist {
             linear: self.velocity.as_vec3(),
@@ -136,7 +137,7 @@ impl RigidMotion {
         }
     }
 
-    /// Velocity at a point.
+    /// Velocity [m/s] of the rigid motion at a position [m].
     pub fn at(&self, position: Row) -> DVec3 {
         self.velocity
             + self
@@ -145,7 +146,7 @@ impl RigidMotion {
     }
 }
 
-/// Centre of mass of points (position, mass).
+/// Centre of mass [m] of points (position [m], mass [kg]).
 pub fn centre_of(points: impl Iterator<Item = (Row, f32)>) -> DVec3 {
     let (mut sum, mut total) = (DVec3::ZERO, 0.0);
     for (position, mass) in points {
@@ -156,7 +157,7 @@ pub fn centre_of(points: impl Iterator<Item = (Row, f32)>) -> DVec3 {
     sum / total
 }
 
-/// Solves m x = b for a symmetric positive definite matrix by its adjugate.
+/// Solves m x = b for a symmetric positive definite matrix m by its adjugate; returns 0 if m is singular.
 fn solved(m: &[DVec3; 3], b: DVec3) -> DVec3 {
     let columns = [m[1].cross(m[2]), m[2].cross(m[0]), m[0].cross(m[1])];
     let determinant = m[0].dot(columns[0]);

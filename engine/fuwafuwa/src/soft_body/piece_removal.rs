@@ -1,7 +1,7 @@
 //! Removal of pieces from a body: voxels, connectivity, cells, elements and nodes.
 //!
-//! A piece shares no node with other pieces. Therefore the other pieces keep their elements, nodes, numbers,
-//! masses and motion; they lose only the neighbours across the crack.
+//! A piece shares no node with other pieces. Therefore the remaining pieces keep their elements, nodes,
+//! numbers, masses and motion.
 
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::{ElementId, PieceId};
@@ -9,13 +9,14 @@ use crate::soft_body::SoftBody;
 use crate::topology::changes::Changes;
 
 impl<D: Dim> SoftBody<D> {
-    /// Whether the body has a piece with this number that was not removed.
+    /// Returns whether the body has a piece with this number that was not removed.
     pub fn has_piece(&self, piece: PieceId) -> bool {
         let piece = self.topology.pieces.list.get(piece.index());
         piece.is_some_and(|piece| !piece.removed)
     }
 
-    /// Removes pieces, given in ascending order, of which at least one exists; returns all changes.
+    /// Removes pieces, given in ascending order. At least one of them must not have been removed before.
+    /// Returns all changes of the body.
     pub(crate) fn take_out(&mut self, pieces: &[PieceId]) -> Changes {
         let topology = &mut self.topology;
         let of_element = |id: &ElementId| topology.pieces.of_element(*id);
@@ -34,7 +35,7 @@ impl<D: Dim> SoftBody<D> {
         let nodes = topology.mesh.take_out(&topology.connectivity, &elements);
         for &piece in pieces {
             let piece = &mut topology.pieces.list[piece];
-            // Marks the piece as asleep, too, so that no code treats a removed piece as moving.
+            // A removed piece is also marked as asleep, so that no code treats it as moving.
             (piece.removed, piece.asleep) = (true, true);
         }
         let blocks = &mut self.state.blocks;

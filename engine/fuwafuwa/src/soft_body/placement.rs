@@ -24,7 +24,7 @@ impl<D: Dim> SoftBody<D> {
         self.state.user_data
     }
 
-    /// Factor on gravity for this body, default 1: see
+    /// Factor by which gravity is multiplied for this body, default 1: see
     /// [`World::set_gravity_scale`](crate::World::set_gravity_scale).
     pub fn gravity_scale(&self) -> f32 {
         self.state.gravity_scale
@@ -38,7 +38,7 @@ impl<D: Dim> SoftBody<D> {
         self
     }
 
-    /// Returns the body rotated about a point [m], without strain and without tearing. In 2D only the part of
+    /// Returns the body rotated about `point` [m] as a rigid body, without strain. In 2D, only the part of
     /// the rotation about the third axis is applied. Pieces whose positions become non-finite are quarantined
     /// in their first tick.
     ///
@@ -66,8 +66,8 @@ impl<D: Dim> SoftBody<D> {
         self.rotated_about(rotation, centre)
     }
 
-    /// Returns the body with a velocity: linear, or linear and angular about its centre of mass. Every node gets the
-    /// velocity of that rigid motion.
+    /// Returns the body with every node moving as in a rigid motion. `velocity` is the linear velocity [m/s],
+    /// or the linear velocity and the angular velocity [rad/s] about the centre of mass.
     #[must_use]
     pub fn with_velocity(self, velocity: impl Into<Velocity<D>>) -> Self {
         self.moving_at(velocity.into().twist())
@@ -146,7 +146,8 @@ impl<D: Dim> SoftBody<D> {
         blocks.rotate(rotation);
     }
 
-    /// Returns the rigid motion with the linear and angular momentum of the body.
+    /// Returns the velocity of the centre of mass [m/s], and the angular velocity [rad/s] that a rigid body
+    /// with the same mass distribution and angular momentum would have.
     pub(crate) fn rigid_velocity(&self) -> Twist {
         let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
         let masses = || self.states(&nodes).map(|(at, _, mass)| (at, mass));
@@ -155,7 +156,8 @@ impl<D: Dim> SoftBody<D> {
         RigidMotion::with_momentum(masses(), centre, momentum).velocity()
     }
 
-    /// Gives all nodes that are neither fixed nor asleep the velocity of a rigid motion about the centre of mass.
+    /// Gives all nodes that are neither fixed nor asleep the velocity of a rigid motion: linear [m/s], and
+    /// angular [rad/s] about the centre of mass.
     pub(crate) fn set_velocity(&mut self, velocity: Twist) {
         for (id, _) in self.topology.mesh.nodes() {
             if self.state.inverse_mass[id] > 0.0 {
@@ -165,8 +167,8 @@ impl<D: Dim> SoftBody<D> {
         self.add_velocity(velocity.linear, velocity.angular);
     }
 
-    /// Adds `linear` [m/s], and `angular` [rad/s] about the centre of mass, to the velocities of all nodes
-    /// that are neither fixed nor asleep.
+    /// Adds the velocity of a rigid motion to all nodes that are neither fixed nor asleep. The rigid motion
+    /// is `linear` [m/s], and `angular` [rad/s] about the centre of mass.
     pub(crate) fn add_velocity(&mut self, linear: Vec3, angular: Vec3) {
         let centre = self.centre();
         let angular = turning::<D>(angular);

@@ -1,23 +1,24 @@
 //! Plasticity of an element in double precision: the reference for `plastic_kernel`.
 //!
-//! The deformation is the product F = Fₑ Fₚ of an elastic and a plastic part [Bargteil 2007]. The state is
-//! the plastic inverse G = Fₚ⁻¹, with determinant 1, because plastic flow preserves volume. Let R be the
-//! rotation of Fₑ, S = sym RᵀFₑ, d the deviator of S (in the exponent: the number of dimensions), y the yield
-//! strain and f the largest flow per evaluation. Then
+//! The deformation gradient is the product F = Fₑ Fₚ of an elastic and a plastic part [Bargteil 2007]. The
+//! state is the plastic inverse G = Fₚ⁻¹, with determinant 1, because plastic flow preserves volume. Let Pₑ
+//! be the stress of the elastic law, R the rotation of Fₑ, S = sym RᵀFₑ the stretch, and D the deviator of S.
+//! Let y be the norm of D at which the material yields, f the largest flow per evaluation, and n the number
+//! of dimensions. Then the stress P and the flow are
 //!
 //! ```text
 //! Fₑ = F G       P = s Pₑ(Fₑ) Gᵀ        s = 1 / λ_max(GᵀG)
-//! |d| > y:       G ← G Q / (det G Q)^(1/d),   Q = 1 − min(|d| − y, f) d/|d|
+//! |D| > y:       G ← G Q / (det G Q)^(1/n),   Q = 1 − min(|D| − y, f) D/|D|
 //! ```
 //!
-//! Q commutes with S. The flow therefore reduces the elastic strain by exactly min(|d| − y, f) and leaves R
+//! Q commutes with S. The flow therefore reduces the elastic strain by exactly min(|D| − y, f) and leaves R
 //! unchanged, so that no decomposition is needed. This is the return mapping of von Mises' law to first
 //! order. P Fᵀ is symmetric like Pₑ Fₑᵀ, so angular momentum is conserved. The additive strain of [Mueller
 //! 2004] does not conserve it if the plastic and the elastic strain of an element have different directions.
 //!
-//! The factor s prevents flattened elements from becoming too stiff for the substep: relative to its rest
-//! shape, a sheet of half the thickness is four times as stiff across. Beyond the plastic limit of the
-//! material, an element is purely elastic.
+//! The factor s prevents flattened elements from becoming too stiff for the substep. Without the factor, a
+//! sheet pressed to half its thickness would be four times as stiff across the sheet, relative to its rest
+//! shape. Beyond the plastic limit of the material, an element is purely elastic.
 
 use crate::foundation::dim::Dim;
 use crate::soft_body::element_law::{
@@ -27,34 +28,35 @@ use crate::soft_body::element_law::{
 use crate::topology::element_class::ElementClass;
 use glam::DVec3;
 
-/// Largest plastic strain per evaluation; the limit prevents jumps of violently torn elements. Q is correct
-/// to first order, with an error of half the squared strain, here 2 %.
+/// Largest plastic strain per evaluation; the limit prevents jumps in the shape of violently torn elements.
+/// The flow is computed to first order, with an error of half the squared plastic strain, here 2 %.
 pub(crate) const MAX_FLOW: f64 = 0.2;
-/// Volume ratio below which an element does not flow, because its deformation is not meaningful; a quarter of
-/// [`MIN_VOLUME_RATIO`].
+/// Volume ratio below which an element does not flow; a quarter of [`MIN_VOLUME_RATIO`]. The strain of such
+/// an element is not meaningful.
 pub(crate) const MIN_FLOW_VOLUME_RATIO: f64 = 0.1;
 
 /// Yield strain and plastic limit of a material.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Plasticity {
-    /// Elastic limit: largest strain that is fully recovered. 0.05 is clay.
+    /// Yield strain: the largest strain that is fully recovered; 0.05 for clay.
     pub yield_strain: f64,
-    /// Plastic limit: largest factor by which a width can shrink permanently.
+    /// Plastic limit: the largest factor by which a width can shrink permanently; usually 2.
     pub limit: f64,
 }
 
 impl Plasticity {
-    /// Norm of the deviator at which the material yields: ε √(n / (n − 1)) for a volume-preserving stretch by
-    /// ε in n dimensions.
+    /// Norm of the strain deviator at which the material yields: ε √(n / (n − 1)), which is the norm for a
+    /// volume-preserving stretch by the yield strain ε in n dimensions.
     pub(crate) fn max_deviator<D: Dim>(self) -> f64 {
         let axes = D::N as f64;
         self.yield_strain * (axes / (axes - 1.0)).sqrt()
     }
 
-    /// |G|² after compression to the plastic limit along one axis, with the same expansion along each other axis.
+    /// Largest squared norm of the plastic inverse G: its value after compression to the plastic limit along
+    /// one axis, with equal expansion along the other axes.
     pub(crate) fn max_plastic_norm_squared<D: Dim>(self) -> f64 {
         let squared = self.limit * self.limit;
-        // There is one other axis in 2D, and two in 3D.
+        // In 2D one other axis expands, in 3D two.
         match D::N {
             2 => squared + 1.0 / squared,
             _ => squared + 2.0 / self.limit,
@@ -62,12 +64,12 @@ impl Plasticity {
     }
 }
 
-/// Returns the elastic part Fₑ = F G of a deformation F.
+/// Returns the elastic part F G of a deformation gradient F with the plastic inverse G = `undone`.
 pub fn elastic_part(deformation: &Matrix, undone: &Matrix) -> Matrix {
     product(deformation, undone)
 }
 
-/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation with plastic inverse G.
+/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation gradient with the plastic inverse `undone`.
 pub fn stress_after<D: Dim>(
     elasticity: Elasticity,
     deformation: &Matrix,
@@ -84,8 +86,8 @@ pub fn stress_after<D: Dim>(
     total
 }
 
-/// Returns the force [N] of an element of width `size` [m] on each of its nodes, at `positions` [m], with
-/// plastic inverse G.
+/// Returns the elastic force [N] that an element with the plastic inverse `undone` exerts on each of its
+/// nodes. The element is `size` [m] wide; `positions` are those of its nodes [m].
 ///
 /// # Panics
 /// If the number of positions is not the number of nodes of the element class.
@@ -107,8 +109,8 @@ pub fn forces_after<D: Dim>(
     forces_of_stress(elasticity, &stress, element_class, size, positions)
 }
 
-/// Returns the plastic inverse G after plastic flow. G changes only if the elastic strain exceeds the yield
-/// strain.
+/// Returns the plastic inverse after plastic flow; `undone` is the plastic inverse before. The two differ
+/// only if the elastic strain exceeds the yield strain.
 pub fn flow<D: Dim>(
     plasticity: Plasticity,
     elasticity: Elasticity,
@@ -148,7 +150,8 @@ pub fn flow<D: Dim>(
     }
     let next = product(undone, &step);
     let volume = determinant(&next);
-    // In 2D the volume is rescaled by two axes only, because the third axis is not deformed.
+    // Rescales the plastic inverse to determinant 1; in 2D by two axes only, because the third axis is not
+    // deformed.
     let scale = 1.0
         / if D::N == 2 {
             volume.sqrt()
@@ -162,8 +165,9 @@ pub fn flow<D: Dim>(
         }
     }
     let inner = |m: &Matrix| squared(m) - (3 - D::N) as f64;
-    // Flow back towards the original shape raises the stiffness factor of the element, and may thereby raise its
-    // energy. Compares the stored energy before and after, so that flow that would increase it is rejected.
+    // Flow back towards the original shape raises the stiffness factor of an element, and may thereby raise
+    // its elastic energy. Flow that would raise the energy is rejected, so the energies before and after are
+    // compared.
     let eased = product(&stretch, &step);
     let eased = [0, 1, 2].map(|i: usize| {
         DVec3::from([0, 1, 2].map(|j: usize| {
@@ -184,7 +188,8 @@ pub fn flow<D: Dim>(
     if may_be { next } else { *undone }
 }
 
-/// Elastic energy density [J/m³] of a stretch S in an element with volume ratio `volume`.
+/// Elastic energy density [J/m³] of an element with the symmetric stretch matrix `stretch` and the volume
+/// ratio `volume`.
 fn density(elasticity: Elasticity, stretch: &Matrix, volume: f64) -> f64 {
     let mut strain = *stretch;
     (0..3).for_each(|k| strain[k][k] -= 1.0);
@@ -195,8 +200,8 @@ fn density(elasticity: Elasticity, stretch: &Matrix, volume: f64) -> f64 {
         + 0.5 * elasticity.young * below * below
 }
 
-/// Stiffness factor s = 1 / λ_max(GᵀG) of a plastically deformed element. Estimated from the trace and the
-/// norm of GᵀG; exact in 2D and for elements flattened along one axis.
+/// Stiffness factor 1 / λ_max(GᵀG) of an element with plastic inverse G. The largest eigenvalue λ_max is
+/// estimated from the trace and the norm of GᵀG; exact in 2D and for elements flattened along one axis.
 pub fn plastic_stiffness_factor<D: Dim>(undone: &Matrix) -> f64 {
     let axes = D::N as f64;
     let mut squares = [DVec3::ZERO; 3];
@@ -243,7 +248,7 @@ mod tests {
     }
 
     fn check_flow<D: Dim>() {
-        // Stretch along the first axis, volume preserved.
+        // Deformation gradient of a stretch by the factor `by` along the first axis, with preserved volume.
         let drawn = |by: f64| {
             let mut f = IDENTITY;
             f[0][0] = by;
@@ -261,8 +266,8 @@ mod tests {
         let left = elastic_part(&drawn(1.3), &undone)[0][0];
         assert!((left - 1.05).abs() < 2e-3, "{left}");
         assert!(plastic_stiffness_factor::<D>(&undone) <= 1.0);
-        // An element can be compressed to half its width and no further. Compression and stretching back
-        // restore the original shape.
+        // An element is compressed to 0.3 of its width, but flows only to half its width, the plastic limit.
+        // Stretching back then restores the original shape up to the yield strain.
         let mut flat = IDENTITY;
         for step in 0..400 {
             let by = 1.0 - 0.7 * f64::from(step.min(300)) / 300.0;
@@ -271,7 +276,8 @@ mod tests {
         let pressed = 1.0 / flat[0][0];
         assert!((pressed - 0.5).abs() < 0.02, "{pressed}");
         assert!((plastic_stiffness_factor::<D>(&flat) - 0.25).abs() < 0.03);
-        // Many small steps: a step is correct only to first order, so one large step would flow too far.
+        // Deforms in many small steps. Flow is correct only to first order, so one large step would flow too
+        // far.
         for step in 0..400 {
             let by = 0.3 + 0.7 * f64::from(step.min(300)) / 300.0;
             flat = flow::<D>(CLAY, soft(), &drawn(by), &flat);
@@ -285,7 +291,8 @@ mod tests {
         check_flow::<Dim3>();
     }
 
-    /// Regression: with the additive strain, plastic strain across the load direction produced a torque.
+    /// Regression test: an earlier law with additive plastic strain exerted a torque if the plastic strain
+    /// was not along the load.
     #[test]
     fn stress_after_flow_preserves_angular_momentum() {
         let mut undone = IDENTITY;

@@ -16,8 +16,9 @@ use glam::Vec3;
 impl<D: Dim> SoftBody<D> {
     /// Splits shared nodes. Each entry of `at` is a lattice point and a mask of octants: the voxels in these
     /// octants no longer share nodes with the other voxels around the point. Then remodels the elements
-    /// around the points [Endo 2004, §3.2]. Positions and velocities are transferred; linear and angular
-    /// momentum are preserved. Returns the detached pieces. Has no effect on a body of [`Grading::Coarse`].
+    /// around the points [Endo 2004, §3.2]. New nodes inherit positions and velocities from old nodes; linear
+    /// and angular momentum are preserved. Returns the detached pieces. Has no effect on a body of
+    /// [`Grading::Coarse`].
     #[inline(never)]
     pub fn release(&mut self, at: &[(Point, u8)]) -> Vec<PieceId> {
         self.tear(at).detached
@@ -30,7 +31,7 @@ impl<D: Dim> SoftBody<D> {
         }
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
-            // Lists each point once, although a point often has several consecutive entries.
+            // `at` often has several consecutive entries for one point. `changed` lists such a point once.
             if self.topology.connectivity.release(point, side) && changed.last() != Some(&point) {
                 changed.push(point);
             }
@@ -82,8 +83,8 @@ impl<D: Dim> SoftBody<D> {
         changes
     }
 
-    /// Returns the elements around the given points, sorted into places. Points that have an element in common
-    /// belong to the same place, directly or through other points. Ids ascend within each place.
+    /// Returns the elements around the given points, in clusters. Two points with a common element belong to
+    /// one cluster, directly or through other points. Element ids ascend within each cluster.
     fn places_around(&self, points: &[Point]) -> Vec<Vec<ElementId>> {
         let around = |&at: &Point| self.topology.mesh.owners_around(at, D::ALL_CORNERS);
         let elements = points.iter().flat_map(around);
@@ -98,8 +99,8 @@ impl<D: Dim> SoftBody<D> {
         joined.sort(&elements)
     }
 
-    /// Transfers the state of the old nodes and elements to the new ones. `touched` are the nodes of all new
-    /// or changed elements.
+    /// Transfers the state of old nodes and elements to new ones. `touched` are the nodes of all new or
+    /// changed elements.
     fn pass_on(&mut self, remodelled: &Remodelled, touched: &[NodeId]) {
         let Remodelled {
             removed,
@@ -164,7 +165,8 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Plastic inverses of new elements, taken from the elements that filled their voxels before.
+    /// Returns the plastic inverse of each new element, taken from the removed element that contained its
+    /// first voxel.
     fn dents_of(&self, remodelled: &Remodelled, new: &[ElementId]) -> Vec<(ElementId, [Vec3; 3])> {
         let blocks = &self.state.blocks;
         if !blocks.has_plastic() {
@@ -181,7 +183,7 @@ impl<D: Dim> SoftBody<D> {
         new.iter().filter_map(of).collect()
     }
 
-    /// Returns those of the given nodes that are neither fixed nor asleep, sorted by piece.
+    /// Returns the given nodes without those that are fixed or asleep, sorted by piece.
     fn free_by_piece(&self, nodes: impl Iterator<Item = NodeId>) -> Vec<NodeId> {
         // Only free nodes take part in the correction of momentum, because fixed nodes keep their velocity.
         let free = |id: &NodeId| self.state.inverse_mass[*id] > 0.0;
@@ -196,8 +198,8 @@ impl<D: Dim> SoftBody<D> {
         nodes.chunk_by(|&a, &b| of_node(a) == of_node(b)).collect()
     }
 
-    /// Interpolates the state of new nodes from old nodes. Reads all old states before writing, because a new
-    /// node may have the id of an old one.
+    /// Interpolates the state of new nodes from old nodes. Reads the states of all old nodes before it writes
+    /// any.
     fn inherit(&mut self, remodelled: &Remodelled) {
         let inherited = &remodelled.inherited;
         let mean = |rows: &IndexVec<NodeId, Row>, from: &[(NodeId, f64)]| {
@@ -228,7 +230,7 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Returns the nodes of some elements, ascending.
+    /// Returns the nodes of the given elements, ascending.
     fn nodes_of(&self, elements: &[ElementId]) -> Vec<NodeId> {
         let elements = elements
             .iter()
@@ -237,9 +239,9 @@ impl<D: Dim> SoftBody<D> {
         ascending(nodes, self.topology.mesh.node_capacity())
     }
 
-    /// Adds the rigid motion that restores the momentum `before` about `centre` to the velocities of `nodes`.
-    /// Interpolation preserves linear momentum. It changes angular momentum if new nodes are created between
-    /// the corners of an element, because part of the mass moves to the new nodes.
+    /// Adds a rigid motion to the velocities of `nodes` that restores their momentum to `before`, the
+    /// momentum about `centre`. Interpolation preserves linear momentum. It changes angular momentum if new
+    /// nodes are created between the corners of an element, because part of the mass moves to the new nodes.
     fn restore_momentum(&mut self, nodes: &[NodeId], before: Momentum, centre: DVec3) {
         let missing = before.less(Momentum::of(self.states(nodes), centre));
         let masses = self.states(nodes).map(|(x, _, mass)| (x, mass));
@@ -253,7 +255,7 @@ impl<D: Dim> SoftBody<D> {
     }
 }
 
-/// Returns the voxels around the given points, ascending.
+/// Returns the voxels around the given lattice points, each once, in memory order.
 fn beside<D: Dim>(points: &[Point]) -> Vec<Point> {
     let mut voxels: Vec<Point> = points
         .iter()
@@ -274,7 +276,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     /// Releases many points at once, some near each other and some far apart. The pieces must match those of
-    /// a search from scratch.
+    /// [`Pieces::new`], which searches the whole mesh.
     fn check_pieces<D: Dim>(n: usize) {
         let grid = VoxelGrid::<D>::ball(n, 1.0).expect("a ball is not empty");
         let mut body = SoftBody::new(grid, &[Material::default()]).expect("the material is valid");

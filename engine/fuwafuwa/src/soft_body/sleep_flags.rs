@@ -8,7 +8,7 @@ use crate::topology::mesh::Node;
 use glam::Vec3;
 
 impl<D: Dim> SoftBody<D> {
-    /// Puts all pieces to sleep for which `marked` is true, or wakes them.
+    /// Puts the pieces to sleep for which `marked` is true, or wakes them if `asleep` is false.
     pub(crate) fn set_asleep(&mut self, marked: &IndexVec<PieceId, bool>, asleep: bool) {
         let mut elements = Vec::new();
         for (id, element) in self.topology.mesh.elements() {
@@ -50,9 +50,9 @@ impl<D: Dim> SoftBody<D> {
         before.extend(self.state.position.entries().map(both));
     }
 
-    /// Quarantines pieces with a node that is not finite or faster than `top_speed` [m/s]: resets their nodes
-    /// to the positions recorded at the start of the tick, and puts the pieces to sleep for good. Returns the
-    /// numbers of these pieces.
+    /// Quarantines each piece that has a node with a non-finite position or velocity, or with a speed above
+    /// `top_speed` [m/s]. Resets the nodes of the piece to the positions recorded at the start of the tick,
+    /// and puts the piece to sleep for good. Returns the numbers of these pieces.
     pub(crate) fn quarantine(&mut self, top_speed: f32) -> Vec<PieceId> {
         let mut marked: IndexVec<PieceId, _> = vec![false; self.topology.pieces.list.len()].into();
         for &id in &self.cache.awake {
@@ -77,9 +77,9 @@ impl<D: Dim> SoftBody<D> {
         numbers
     }
 
-    /// Position of a node at the start of the tick. A node without a recorded position, because it or its id
-    /// is new, is placed relative to the nearest recorded node of its elements. If there is none, the node is
-    /// placed at its rest position. Nodes of other elements are not used: across a crack, lattice neighbours
+    /// Position of a node at the start of the tick. A node that is new has no recorded position. It is placed
+    /// relative to the recorded position of the nearest node of its elements, or at its rest position if no
+    /// such node is recorded. Nodes of other elements are not used, because lattice neighbours across a crack
     /// may be far apart.
     fn position_before(&self, id: NodeId, at: Point) -> Row {
         let was = |id: NodeId, at: Point| {

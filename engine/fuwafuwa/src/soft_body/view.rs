@@ -20,27 +20,28 @@ pub struct PieceView {
     pub centre: Vec3,
     /// Velocity of the centre of mass [m/s].
     pub velocity: Vec3,
-    /// Lowest coordinates of the nodes [m].
+    /// Lowest coordinate of the nodes along each axis [m].
     pub low: Vec3,
-    /// Highest coordinates of the nodes [m].
+    /// Highest coordinate of the nodes along each axis [m].
     pub high: Vec3,
     /// Number of elements.
     pub element_count: u32,
     /// Whether the piece sleeps.
     pub asleep: bool,
-    /// Whether the piece was quarantined: stopped for good because it became non-finite or too fast.
+    /// Whether the piece was quarantined: stopped for good because a node became non-finite or too fast.
     pub quarantined: bool,
-    /// Whether the piece was removed; its mass, positions and velocity are then 0.
+    /// Whether the piece was removed. The mass, positions and velocity of a removed piece are 0.
     pub removed: bool,
 }
 
 /// Exposed face of a voxel: a segment in 2D, a quad in 3D.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Facet {
-    /// Nodes of the face: two in 2D, four in 3D. In 3D they run counterclockwise as seen from outside; in 2D
-    /// the body lies to the left.
+    /// Nodes of the face: two in 2D, four in 3D. In 3D they run counterclockwise as seen from outside. In 2D
+    /// the body lies to the left of the segment from the first node to the second. Unused entries are
+    /// `u32::MAX`.
     pub nodes: [NodeId; 4],
-    /// Positions of the nodes [m].
+    /// Positions of `nodes` [m]; 0 for unused entries.
     pub corners: [Vec3; 4],
     /// Outward unit normal.
     pub normal: Vec3,
@@ -48,22 +49,22 @@ pub struct Facet {
     pub element: ElementId,
     /// Piece of the element.
     pub piece: PieceId,
-    /// Whether the face was exposed by a crack.
+    /// Whether a crack exposed the face; false at the original surface.
     pub is_torn: bool,
 }
 
 /// Closed line around a piece of a 2D body, or around a hole in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
-    /// Piece inside the line.
+    /// Piece to which the line belongs.
     pub piece: PieceId,
-    /// Node ids; the body lies to the left.
+    /// Ids of the nodes along the line; the body lies to the left of the line.
     pub nodes: Vec<NodeId>,
-    /// Positions of the nodes [m].
+    /// Positions of `nodes` [m].
     pub points: Vec<Vec3>,
-    /// Outward unit normals at the points.
+    /// Outward unit normal at each entry of `points`.
     pub normals: Vec<Vec3>,
-    /// Whether a crack exposed the segment from each point to the next.
+    /// For each entry of `points`, whether a crack exposed the segment from this point to the next.
     pub is_torn: Vec<bool>,
 }
 
@@ -72,33 +73,34 @@ pub struct Outline {
 pub struct ElementView {
     /// Id of the element.
     pub id: ElementId,
-    /// Level of the cell; 0 = finest.
+    /// Level of the element's cell: the cell is 2^level voxels wide.
     pub level: u8,
     /// Piece of the element.
     pub piece: PieceId,
     /// Number of the material.
     pub material: u8,
-    /// Mask of the children that the element fills in its cell.
+    /// Mask of the children of the cell that the element fills; all bits are set at level 0.
     pub children: u8,
     /// Elastic strain ‖F − R‖: distance of the deformation gradient from its rotation; 0 at rest.
     pub strain: f32,
-    /// Positions of the slots of the 3 × 3 (× 3) lattice [m]. A slot outside the region that the element
-    /// fills has the position of the element's centre.
+    /// Positions [m] of the slots of the element, a 3 × 3 (× 3) lattice. A slot outside the region that the
+    /// element fills has the position of the element's centroid.
     pub slots: [Vec3; 27],
 }
 
 /// Boundary face of the region that an element fills.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct ElementFace {
-    /// Slots at the corners: two in 2D, four in 3D, in the order of [`face_corners`].
+    /// Slots at the corners of the face: two in 2D, four in 3D, in the order of [`face_corners`].
     pub slots: [usize; 4],
-    /// In 3D: whether each side of the face is an edge of the region, that is, no other face continues in the
-    /// same plane beyond the side. Side k leads from corner k to the next corner.
+    /// In 3D, for each side of the face, whether the surface of the region bends at the side. False if a
+    /// further face of the region continues in the same plane beyond the side. Side k leads from corner k to
+    /// the next corner.
     pub is_edge: [bool; 4],
 }
 
-/// Returns the squares or cubes that an element fills, as their low corners and widths, both in slots. There
-/// is one for each filled child, or a single one for an element of level 0.
+/// Returns the squares or cubes that an element fills, each as its low corner and its width, in steps of the
+/// slot lattice: one for each filled child, or a single one for an element of level 0.
 pub fn blocks<D: Dim>(level: u8, children: u8) -> impl Iterator<Item = (Point, i32)> {
     let whole = (level == 0).then_some(([0; 3], 2));
     let filled = (0..D::CORNERS).filter(move |child| level > 0 && children >> child & 1 == 1);
@@ -106,7 +108,7 @@ pub fn blocks<D: Dim>(level: u8, children: u8) -> impl Iterator<Item = (Point, i
     whole.into_iter().chain(filled)
 }
 
-/// Returns the boundary faces of the region that an element fills, child by child.
+/// Returns the boundary faces of the region that an element fills, in the order of its children.
 ///
 /// ```text
 ///     o──o──o        2D: the element fills three of its children. Where two of them meet there is no face.
@@ -125,7 +127,7 @@ pub fn faces<D: Dim>(level: u8, children: u8) -> Vec<ElementFace> {
             }
             let ring = face_corners::<D>(face);
             let is_edge = [0, 1, 2, 3].map(|k| {
-                // Finds the axis, within the plane of the face, that is perpendicular to this side.
+                // Axis within the plane of the face that is perpendicular to side k of the face.
                 let (a, b) = (ring[k], ring[(k + 1) % 4]);
                 let mut axes = (0..D::N).filter(|&axis| axis != face / 2);
                 let across = axes.find(|axis| (a ^ b) >> axis & 1 == 0);
@@ -143,12 +145,13 @@ pub fn faces<D: Dim>(level: u8, children: u8) -> Vec<ElementFace> {
 }
 
 /// Returns the slots around the region that a 2D element fills, in one counterclockwise round. A slot occurs
-/// twice if two children touch only at that slot.
+/// twice if two filled children touch only at that slot.
 pub fn outline_slots(level: u8, children: u8) -> Vec<usize> {
     let mut faces = faces::<Dim2>(level, children);
     let mut at = faces.first().map(|face| face.slots[0]);
     let mut ring = Vec::new();
-    // If two faces begin at this slot, takes the last one, which belongs to another child.
+    // Two faces begin at a slot where two children touch only at the slot. The last face belongs to the child
+    // that was not visited yet, so that one round visits both children.
     while let Some(next) = faces.iter().rposition(|face| Some(face.slots[0]) == at) {
         let [from, to, ..] = faces.remove(next).slots;
         ring.push(from);
@@ -157,14 +160,14 @@ pub fn outline_slots(level: u8, children: u8) -> Vec<usize> {
     ring
 }
 
-/// Returns the low corner of the square or cube across a face.
+/// Returns the low corner of the square or cube on the other side of a face.
 fn beyond(mut block: Point, face: usize) -> Point {
     block[face / 2] += 2 * (face % 2) as i32 - 1;
     block
 }
 
 impl<D: Dim> SoftBody<D> {
-    /// Returns a summary of each piece, by number.
+    /// Returns a summary of each piece, by piece number.
     #[inline(never)]
     pub fn piece_views(&self) -> Vec<PieceView> {
         let none = |(number, piece): (PieceId, &crate::topology::pieces::Piece)| PieceView {
@@ -207,21 +210,21 @@ impl<D: Dim> SoftBody<D> {
         views
     }
 
-    /// Iterates over the nodes inside a region or on its surface.
+    /// Iterates over the nodes inside `region` or on its surface.
     pub fn nodes_in(&self, region: &Shape<D>) -> impl Iterator<Item = NodeId> + '_ {
         let region = region.solid();
         let nodes = self.topology.mesh.nodes().map(|(id, _)| id);
         nodes.filter(move |&id| region.distance(self.state.position[id].xyz()).0 <= 0.0)
     }
 
-    /// Mass of all nodes inside a region [kg].
+    /// Mass [kg] of all nodes inside `region`, without those on its surface.
     #[inline(never)]
     pub fn mass_inside(&self, region: &Shape<D>) -> f32 {
         let region = region.solid();
         self.mass_where(|at| region.distance(at.to_vec3()).0 < 0.0)
     }
 
-    /// Mass of all nodes [kg] at positions [m] that satisfy a condition.
+    /// Mass [kg] of all nodes whose position [m] satisfies a condition.
     pub fn mass_where(&self, is_inside: impl Fn(D::Vector) -> bool) -> f32 {
         let states = self
             .topology
@@ -233,7 +236,7 @@ impl<D: Dim> SoftBody<D> {
             .fold(0.0, |sum, (_, _, mass)| sum + mass)
     }
 
-    /// Returns all exposed faces, by element.
+    /// Returns all exposed faces, in the order of the elements.
     pub fn facets(&self) -> impl Iterator<Item = Facet> + '_ {
         self.topology
             .mesh
@@ -246,8 +249,8 @@ impl<D: Dim> SoftBody<D> {
             })
     }
 
-    /// Mask of the exposed faces of an element: bit 2 · axis + side. Only elements of level 0 have any. Use
-    /// [`SoftBody::changes_since`] to learn where cracks changed the mask.
+    /// Mask of the exposed faces of an element, with bit 2 · axis + side (0 = low, 1 = high). Always 0 for
+    /// elements above level 0. Use [`SoftBody::changes_since`] to learn which elements cracks have changed.
     ///
     /// # Panics
     /// If the id was never used.
@@ -261,20 +264,20 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Positions of all nodes [m], by id, each padded with a 0. Entries of free ids are unspecified.
+    /// Position [m] of each node, by id, as (x, y, z, 0). Entries of ids without a node are unspecified.
     pub fn positions(&self) -> &IndexVec<NodeId, Row> {
         &self.state.position
     }
 
-    /// Returns the closed lines around all pieces of a 2D body; empty in 3D.
+    /// Returns the closed lines around all pieces of a 2D body and around their holes; empty in 3D.
     #[inline(never)]
     pub fn outlines(&self) -> Vec<Outline> {
         // Surface nodes form closed lines only in 2D.
         if D::N != 2 {
             return Vec::new();
         }
-        // For each node, the surface segment that starts there. Every surface node starts one segment and
-        // ends one.
+        // For each node, the surface segment that starts at the node. At every surface node, one segment
+        // starts and one ends.
         let mut leaving: IndexVec<NodeId, Option<Facet>> =
             vec![None; self.topology.mesh.node_capacity()].into();
         for facet in self.facets() {
@@ -354,8 +357,9 @@ impl<D: Dim> SoftBody<D> {
         sum.sqrt()
     }
 
-    /// Positions of the slots of an element [m]. A slot without a node is in the middle between its
-    /// neighbours on an edge, a face or the cell, or at the element's centre if a neighbour is missing.
+    /// Positions of the slots of an element [m]. A slot without a node gets the mean position of its
+    /// neighbours: an edge middle from two corners, a face centre from four edge middles, the cell centre
+    /// from the face centres. If one of these has no position, the slot gets the centroid of the element.
     fn slot_positions(&self, element: &Element) -> [Vec3; 27] {
         let centre = self.deformation(element).0;
         let mut positions: [Option<Vec3>; 27] = [None; 27];
@@ -363,7 +367,8 @@ impl<D: Dim> SoftBody<D> {
         for (&slot, &node) in slots.iter().zip(&element.nodes) {
             positions[slot as usize] = Some(self.state.position[node].xyz());
         }
-        // Edge middles, then face centres, then the centre: each is the mean of its neighbours of lower order.
+        // Edge middles come first, then face centres, then the cell centre, because each is the mean of slots
+        // of the previous kind.
         for order in 1..=D::N {
             for slot in 0..D::SLOTS {
                 let at = slot_at(slot);
@@ -400,7 +405,8 @@ impl<D: Dim> SoftBody<D> {
             nodes[place] = element.nodes[ring[place]];
             corners[place] = self.state.position[nodes[place]].xyz();
         }
-        // Perpendicular to the segment, or to both diagonals of a quad, which need not be flat.
+        // The normal is perpendicular to a segment in 2D. In 3D it is perpendicular to both diagonals of the
+        // quad, which need not be flat.
         let normal = match D::N {
             2 => {
                 let along = corners[1] - corners[0];
@@ -420,8 +426,8 @@ impl<D: Dim> SoftBody<D> {
 }
 
 impl ElementView {
-    /// Corners [m] of a child that the element fills, in the order of [`corner`]; at level 0, which has no
-    /// children, the corners of the whole cell.
+    /// Corners [m] of a child that the element fills, in the order of [`corner`]. At level 0, where cells
+    /// have no children, the corners of the whole cell.
     pub fn child_corners<D: Dim>(&self, child: usize) -> Vec<Vec3> {
         let at = |vertex: usize| match self.level {
             0 => scale(corner(vertex), 2),

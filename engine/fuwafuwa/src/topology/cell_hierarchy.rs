@@ -1,14 +1,17 @@
-//! Cell hierarchy: the existing cells of every size, and the children that each cell fills.
+//! Cell hierarchy: the set of cells of every size that exist, and the children that each cell fills.
 //!
-//! One rule determines the initial cells and every later change [Endo 2004, §3.2, Figs. 2 and 4]. A voxel at
-//! an open point, or where materials meet, is a cell of level 0. A cell of level l exists if it contains or
-//! touches a cell of level l − 1. A cell fills those of its children that are solid and do not exist as
-//! cells. The filled children of a cell form one element for each face-connected part. All cells of the
-//! topmost level exist: this limits the size of elements to an eighth of the grid.
+//! The same rule determines the initial cells and the cells after every crack [Endo 2004, §3.2, Figs. 2 and
+//! 4]:
 //!
-//! Cracks only grow, so cells are only added. An update after a release starts at the voxels around the
-//! released point, goes up level by level, and ends at the first level without new cells. The cost of a cut
-//! is proportional to the affected cells, not to the body.
+//! - A voxel at an open point, or where materials meet, is a cell of level 0.
+//! - A cell of level l exists if it contains or touches a cell of level l − 1. All cells of the topmost level
+//!   exist, which limits the width of elements to about an eighth of the grid.
+//! - A cell fills those of its children that are solid and do not exist as cells. Each face-connected part of
+//!   the filled children forms one element.
+//!
+//! A crack never closes, so a release only adds cells. The update after a release starts at the voxels around
+//! the released point, goes up level by level, and ends at the first level without new cells. The cost of a
+//! cut is proportional to the number of affected cells, not to the size of the body.
 
 use crate::foundation::dim::{
     Dim, Point, add, corner, neighbourhood, points_in, scale, voxel_around,
@@ -18,13 +21,13 @@ use crate::topology::connectivity::Connectivity;
 use crate::topology::grid::VoxelGrid;
 use std::marker::PhantomData;
 
-/// Cell of the hierarchy: level 0 is one voxel, level l is 2^l voxels wide.
+/// Cell of the hierarchy: a square or cube of 2^level voxels across.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cell {
-    /// Level; 0 = finest.
+    /// Level; 0 = a single voxel.
     pub level: u8,
-    /// Position in units of the size of the cell.
+    /// Coordinates of the cell on its level: the position of its low corner, in widths of the cell.
     pub at: Point,
 }
 
@@ -54,7 +57,7 @@ impl Cell {
         })
     }
 
-    /// Returns child `index`.
+    /// Returns the child with number `index`.
     ///
     /// # Panics
     /// At level 0, which has no children.
@@ -75,37 +78,38 @@ impl Cell {
         }
     }
 
-    /// Returns the voxel in the low corner.
+    /// Returns the voxel in the low corner of the cell.
     #[inline]
     pub fn first_voxel(self) -> Point {
         scale(self.at, self.width())
     }
 }
 
-/// Numbering of all possible cells of a grid, level by level: the indices of tables over cells.
+/// Numbering of all possible cells of a grid, level by level. Tables with one entry for each cell use these
+/// numbers as indices.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CellIndexing {
-    /// For each level: the number of cells on each axis, and the index of its first cell.
+    /// For each level, the number of cells on each axis, and the index of the level's first cell.
     levels: Vec<(Point, usize)>,
     count: usize,
 }
 
 hash_state! { struct CellIndexing { levels, count } }
 
-/// Limits the width of a cell to 1 / `WIDEST` of the longest axis of its grid. Levels up to `SMALL_LEVEL` are
+/// Ratio of the longest axis of a grid to the largest allowed width of a cell. Levels up to `SMALL_LEVEL` are
 /// exempt.
 ///
-/// The mass of an element of width H lies in its nodes, so its second moment ∫ x² dm is too large by H²/6 per
-/// unit of mass. A disc of diameter D with cells up to H = D/4 therefore vibrates 3 % too slowly, however
-/// fine its voxels. With H = D/8 the error is 1 %, at the cost of a dozen more elements.
+/// The mass of an element of width H lies in its nodes, so that its second moment ∫ x² dm is too large by
+/// H²/6 per unit of mass. A disc of diameter D with cells up to H = D/4 therefore vibrates 3 % too slowly,
+/// even with very small voxels. With H = D/8 the error is 1 %, at the cost of a dozen additional elements.
 const WIDEST: i32 = 8;
-/// Levels up to this one are exempt from [`WIDEST`]. Otherwise small bodies would not be graded at all: level
-/// 1 would need a grid of 16 voxels across, and level 2 one of 32.
+/// Highest level that is exempt from [`WIDEST`]. Without the exemption, small bodies would have elements of
+/// level 0 only: level 1 would require a grid of 16 voxels across, and level 2 one of 32.
 const SMALL_LEVEL: usize = 2;
 
 impl CellIndexing {
-    /// Numbers the cells of a grid of `size` voxels, up to the largest allowed cells.
+    /// Numbers the cells of a grid of `size` voxels, from level 0 up to the largest allowed cells.
     fn new(mut size: Point) -> Self {
         let longest = size[0].max(size[1]).max(size[2]);
         let mut places = Self {
@@ -128,13 +132,13 @@ impl CellIndexing {
         self.count
     }
 
-    /// Returns the number of possible cells of a level; those of level 0 have the first indices.
+    /// Returns the number of possible cells of a level.
     pub fn count_of(&self, level: usize) -> usize {
         let (size, _) = self.levels[level];
         size.iter().map(|&extent| extent as usize).product()
     }
 
-    /// Returns the index of a cell; `None` outside the grid.
+    /// Returns the index of a cell; `None` if the cell is outside the grid.
     #[inline]
     pub fn index(&self, cell: Cell) -> Option<usize> {
         let &(size, first) = self.levels.get(cell.level as usize)?;
@@ -143,8 +147,8 @@ impl CellIndexing {
         inside.then(|| first + (z * size[1] as usize + y) * size[0] as usize + x)
     }
 
-    /// Returns the indices of the voxels around a lattice point, by octant; `None` unless all are in the
-    /// grid.
+    /// Returns the indices of the voxels around a lattice point, by octant; `None` if some of them are
+    /// outside the grid.
     #[inline]
     pub fn voxels_around<D: Dim>(&self, at: Point) -> Option<[usize; 8]> {
         let (size, _) = self.levels[0];
@@ -158,24 +162,24 @@ impl CellIndexing {
     }
 }
 
-/// Grading of the elements from the surface to the inside.
+/// Grading: how the size of elements grows from the surface of a body to the inside.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Grading {
-    /// Single voxels at the surface, larger elements inside. Required for cutting.
+    /// Elements of one voxel at the surface, larger elements inside. Required for cutting.
     #[default]
     Graded,
-    /// Single voxels everywhere: the reference for graded bodies.
+    /// Elements of one voxel everywhere. Serves as the reference for graded bodies.
     Uniform,
-    /// Two voxels wide at the surface, with a node at every lattice point there: the variant counted in [Endo
-    /// 2004, §3.1]. For counting and comparison only: it does not tear, cannot be cut, and has no surface for
-    /// drawing or contact.
+    /// Elements two voxels wide at the surface, with a node at every lattice point of the surface. This is
+    /// the mesh whose vertices [Endo 2004, §3.1] counts. For counting and comparison only: the body does not
+    /// tear, cannot be cut, and has no surface for drawing or contact.
     Coarse,
 }
 
 hash_state! { enum Grading { Graded, Uniform, Coarse } }
 
-/// Cell hierarchy of a body: the set of existing cells.
+/// Cell hierarchy of a body: for each possible cell, whether the cell exists.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -189,12 +193,12 @@ pub struct CellHierarchy<D: Dim> {
 hash_state! { [D: Dim] struct CellHierarchy<D> { places, grading, exists } skip { dim } }
 
 impl<D: Dim> CellHierarchy<D> {
-    /// Builds the cells of a body from scratch.
+    /// Builds the cell hierarchy of a body from scratch.
     #[inline(never)]
     pub fn new(grid: &VoxelGrid<D>, connectivity: &Connectivity<D>, grading: Grading) -> Self {
         let places = CellIndexing::new(grid.size());
         let mut exists = vec![false; places.count()];
-        // The topmost cells always exist, so that every voxel has an owner.
+        // All cells of the topmost level exist, so that each voxel belongs to some cell.
         if let [_, .., (_, first)] = places.levels[..] {
             exists[first..].fill(true);
         }
@@ -208,7 +212,7 @@ impl<D: Dim> CellHierarchy<D> {
         hierarchy
     }
 
-    /// Returns the grading of the cells.
+    /// Returns the grading of the body.
     pub fn grading(&self) -> Grading {
         self.grading
     }
@@ -218,21 +222,21 @@ impl<D: Dim> CellHierarchy<D> {
         self.places.levels.len()
     }
 
-    /// Returns the numbering of the cells.
+    /// Returns the numbering of all possible cells.
     pub fn places(&self) -> &CellIndexing {
         &self.places
     }
 
-    /// Returns whether a cell exists. An existing cell may own elements, or may have only children that exist
-    /// as cells.
+    /// Returns whether a cell exists. An existing cell has no elements of its own if all its solid children
+    /// exist as cells, too.
     #[inline]
     pub fn exists(&self, cell: Cell) -> bool {
         let number = self.places.index(cell);
         number.is_some_and(|number| self.exists[number])
     }
 
-    /// Returns the mask of the children that a cell fills itself: those that are solid and do not exist as
-    /// cells. At level 0, where cells have no children, every bit is set.
+    /// Returns the mask of the children that a cell fills: those that are solid and do not exist as cells.
+    /// Every bit is set at level 0, where cells have no children, and no bit if the cell does not exist.
     pub fn filled(&self, grid: &VoxelGrid<D>, cell: Cell) -> u8 {
         if !self.exists(cell) {
             return 0;
@@ -247,7 +251,8 @@ impl<D: Dim> CellHierarchy<D> {
         })
     }
 
-    /// Returns the cell that owns a solid voxel, and the index of its child that contains the voxel.
+    /// Returns the finest existing cell that contains a solid voxel, and the index of its child that contains
+    /// the voxel.
     ///
     /// # Panics
     /// If the voxel is outside the grid of the hierarchy.
@@ -280,8 +285,8 @@ impl<D: Dim> CellHierarchy<D> {
             .filter(|&cell| self.exists(cell))
     }
 
-    /// Updates the cells after the voxel groups at the `changed` points have changed. Returns the new cells,
-    /// level by level in ascending order [Endo 2004, §3.2, phase 1].
+    /// Adds the cells that are required after voxel groups at the `changed` lattice points have been split.
+    /// Returns the new cells, ascending by level, then in memory order [Endo 2004, §3.2, phase 1].
     pub fn refine(
         &mut self,
         grid: &VoxelGrid<D>,
@@ -325,9 +330,10 @@ impl<D: Dim> CellHierarchy<D> {
         born
     }
 
-    /// Removes the cells of removed voxels, and the cells that existed only because of them. The result
-    /// equals a hierarchy built from scratch. A cell stays if some of its voxels remain. These voxels touched
-    /// the removed ones at open points, so they have finer cells of their own, which require the cell.
+    /// Removes the cells of removed voxels, and the coarser cells that existed only because of these cells.
+    /// The result equals a hierarchy built from scratch. A cell of which some voxels remain is never removed:
+    /// the remaining voxels touched the removed ones at open points, so they are cells of level 0, which
+    /// require the coarser cell.
     pub(crate) fn take_out(
         &mut self,
         grid: &VoxelGrid<D>,
@@ -335,7 +341,7 @@ impl<D: Dim> CellHierarchy<D> {
         voxels: &[Point],
     ) {
         if self.grading == Grading::Coarse {
-            // Rebuilds the hierarchy: a body with this grading has no cells of level 0, from which the update
+            // Rebuilds the hierarchy. A body of this grading has no cells of level 0, from which the update
             // below starts.
             *self = Self::new(grid, connectivity, self.grading);
             return;
@@ -380,8 +386,8 @@ impl<D: Dim> CellHierarchy<D> {
     }
 }
 
-/// Returns whether the voxels around a point must be cells of level 0, because the point is open or different
-/// materials meet there.
+/// Returns whether the voxels around a lattice point must be cells of level 0, because the point is open or
+/// because different materials meet at the point.
 fn is_fine<D: Dim>(grid: &VoxelGrid<D>, connectivity: &Connectivity<D>, at: Point) -> bool {
     if connectivity.is_open(at) {
         return true;
@@ -390,7 +396,7 @@ fn is_fine<D: Dim>(grid: &VoxelGrid<D>, connectivity: &Connectivity<D>, at: Poin
     (1..D::CORNERS).any(|octant| grid.material(voxel_around::<D>(at, octant)) != first)
 }
 
-/// Returns the face-connected parts of a mask of children, ascending by their lowest child.
+/// Returns the face-connected parts of a mask of children, each as a mask, ascending by lowest child.
 pub fn parts<D: Dim>(mask: u8) -> impl Iterator<Item = u8> {
     let mut left = mask;
     std::iter::from_fn(move || {
@@ -398,8 +404,8 @@ pub fn parts<D: Dim>(mask: u8) -> impl Iterator<Item = u8> {
             return None;
         }
         let mut part = left & left.wrapping_neg();
-        // Repeats the pass, because a child found late may connect children tested before it. The number of
-        // passes is that of the children, the longest possible path.
+        // Repeats the pass, because a child that is found late may connect children that were tested before.
+        // As many passes as children suffice, because no path through the children is longer.
         for _ in 0..D::CORNERS {
             let known = part;
             for child in (0..D::CORNERS).filter(|child| known >> child & 1 == 1) {

@@ -1,46 +1,47 @@
-//! Changes of a body by tears and removals, for readers that keep derived data: contact, rendering, a game.
+//! Changes of a body by cracks and removals. Contact, rendering and games update their derived data from
+//! these changes.
 
 use crate::foundation::ids::{ElementId, NodeId, PieceId};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Changes of a body since a bookmark.
+/// Changes of a body since a bookmark, as lists of ids.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Changes {
     /// Nodes that were added or removed.
     pub nodes: Vec<NodeId>,
-    /// Elements that were added or removed, or got other nodes or exposed faces.
+    /// Elements that were added or removed, or whose nodes or exposed faces changed.
     pub elements: Vec<ElementId>,
-    /// Pieces that were detached.
+    /// New pieces that were detached from older pieces.
     pub detached: Vec<PieceId>,
     /// Pieces that were removed, with their nodes and elements.
     pub removed: Vec<PieceId>,
 }
 
-/// Position in the history of a body up to which a reader knows the changes. The default belongs to no
-/// history: a reader that starts with it must read the whole body once.
+/// Position in the history of changes of a body, up to which a reader has processed the changes. The default
+/// belongs to no history: a reader that starts with it must read the whole body once.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bookmark {
     /// Number of the history, see [`History::number`]; 0 = no history.
     history: u64,
-    /// Number of changes that have been read.
+    /// Number of entries of the history, counted from its start, that the reader has processed.
     tears: u64,
 }
 
-/// Most recent changes of a body.
+/// History of a body: its most recent changes.
 #[derive(Debug)]
 pub(crate) struct History {
-    /// Number of the history, unique within the program, so that two bodies cannot be confused.
+    /// Number of the history, unique within the program. A bookmark of another body is recognised by it.
     number: u64,
-    /// Number of older changes that were dropped.
+    /// Number of entries that were dropped, all older than those in `kept`.
     forgotten: u64,
     kept: VecDeque<Changes>,
-    /// Number of ids in `kept`.
+    /// Number of ids in all entries of `kept`, which [`History::add`] limits.
     size: usize,
 }
 
 impl Changes {
-    /// Returns the number of node, element and piece ids in total.
+    /// Returns the total number of node, element and piece ids.
     fn size(&self) -> usize {
         self.nodes.len() + self.elements.len() + self.detached.len() + self.removed.len()
     }
@@ -48,7 +49,8 @@ impl Changes {
 
 impl Default for History {
     fn default() -> Self {
-        // A global counter is allowed here, because the simulation does not depend on this number.
+        // A global counter does not make simulations differ, because they do not depend on the number of a
+        // history.
         static COUNT: AtomicU64 = AtomicU64::new(1);
         Self {
             number: COUNT.fetch_add(1, Ordering::Relaxed),
@@ -59,7 +61,7 @@ impl Default for History {
     }
 }
 
-/// A clone starts its own history.
+/// A clone starts a new, empty history: bookmarks of the original are not valid for the clone.
 impl Clone for History {
     fn clone(&self) -> Self {
         Self::default()
@@ -67,8 +69,8 @@ impl Clone for History {
 }
 
 impl History {
-    /// Appends a change. Drops the oldest changes while the history has more than `most` ids, because reading
-    /// the whole body is then faster.
+    /// Appends an entry. While the history contains more than `most` ids, drops the oldest entry: reading the
+    /// whole body is then faster than reading the history.
     pub fn add(&mut self, changes: &Changes, most: usize) {
         self.kept.push_back(changes.clone());
         self.size += changes.size();
@@ -81,7 +83,7 @@ impl History {
         }
     }
 
-    /// Returns a bookmark at the present state.
+    /// Returns a bookmark at the present end of the history.
     pub fn end(&self) -> Bookmark {
         Bookmark {
             history: self.number,
@@ -138,8 +140,8 @@ mod tests {
         assert_eq!(history.since(own), Some(changes(&[2, 3, 5])));
         own = history.end();
         assert_eq!(history.since(own), Some(changes(&[])));
-        // Some changes are dropped: a reader that has read the last dropped change can continue, any other
-        // must read the whole body.
+        // The history drops an entry here. A reader that has processed this entry can continue; a reader that
+        // has not must read the whole body.
         let late = own;
         history.add(&changes(&[1, 4]), 3);
         assert_eq!(history.since(late), Some(changes(&[1, 4])));

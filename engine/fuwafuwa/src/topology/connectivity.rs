@@ -1,9 +1,9 @@
 //! Connectivity: the grouping of the voxels around every lattice point.
 //!
-//! Voxels of one group share a node at that point; releasing a node splits its group. A face between two
-//! voxels is *closed* if they share a node at every point of that face. After a release, the voxels at a
-//! point stay together only through closed faces. So cracks that meet join up, and no hinge of a single node
-//! remains ([`Connectivity::normalise`]).
+//! Voxels of one group share a node at the lattice point; a release splits a group, and so the node. A face
+//! between two voxels is *closed* if the voxels share a node at every corner of that face. After a release,
+//! voxels stay in one group only if closed faces connect them. Therefore cracks that meet join up, and no two
+//! parts of a body hang together by a single node ([`Connectivity::normalise`]).
 //!
 //! ```text
 //!   a │ b        the crack came from below and ended at p: c and d are no longer closed, but
@@ -18,13 +18,13 @@ use crate::foundation::id_lists::ascending;
 use crate::foundation::ids::id;
 use crate::topology::grid::VoxelGrid;
 use std::marker::PhantomData;
-/// Name in [`Groups`] of an octant without a voxel.
+/// Group name that marks an octant without a voxel in [`Groups`].
 const EMPTY: u32 = 15;
 
-/// Partition of the voxels around one lattice point into groups that share a node.
+/// Partition of the voxels around one lattice point into groups. The voxels of a group share a node.
 ///
-/// Each octant has four bits for the name of its group: the lowest octant of the group, or 15 without a
-/// voxel.
+/// Each octant has four bits for the name of its group. The name is the number of the lowest octant in the
+/// group, or 15 if the octant has no voxel.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Groups(u32);
@@ -38,10 +38,10 @@ impl HashState for Groups {
 }
 
 impl Groups {
-    /// No voxels.
+    /// Groups of a lattice point without voxels.
     pub const NONE: Self = Self(u32::MAX);
 
-    /// Puts all octants of `solid` in one group.
+    /// Returns groups in which all octants of the mask `solid` form a single group.
     #[inline]
     pub fn joined(solid: u8) -> Self {
         let mut groups = Self::NONE;
@@ -54,7 +54,7 @@ impl Groups {
         groups
     }
 
-    /// Puts every octant of `solid` in its own group.
+    /// Returns groups in which each octant of the mask `solid` forms a group of its own.
     fn apart(solid: u8) -> Self {
         let mut groups = Self::NONE;
         for octant in (0..8).filter(|octant| solid >> octant & 1 == 1) {
@@ -69,7 +69,7 @@ impl Groups {
         !self.named(EMPTY)
     }
 
-    /// Returns the mask of the octants that share a node with `octant`; 0 if there is no voxel.
+    /// Returns the mask of the octants in the group of `octant`, itself included; 0 if `octant` has no voxel.
     #[inline]
     pub fn group_of(self, octant: usize) -> u8 {
         match self.name(octant) {
@@ -78,7 +78,7 @@ impl Groups {
         }
     }
 
-    /// Returns whether two octants contain voxels that share a node.
+    /// Returns whether both octants have voxels, and these voxels share a node.
     #[inline]
     pub fn shares(self, a: usize, b: usize) -> bool {
         self.name(a) != EMPTY && self.name(a) == self.name(b)
@@ -91,8 +91,8 @@ impl Groups {
             .map(move |octant| self.group_of(octant))
     }
 
-    /// Splits every group that has octants both inside and outside `side`; returns false if there is no such
-    /// group.
+    /// Splits each group that has octants both inside and outside the mask `side`. Returns false if there is
+    /// no such group.
     pub fn release(&mut self, side: u8) -> bool {
         let split = self.split(side);
         std::mem::replace(self, split) != split
@@ -120,11 +120,11 @@ impl Groups {
         }
     }
 
-    /// Returns the mask of the octants whose group has this name.
+    /// Returns the mask of the octants whose group has the name `name`.
     #[inline]
     fn named(self, name: u32) -> u8 {
-        // XOR leaves four zero bits in each octant with this name. The steps below reduce the four bits to
-        // one and move these bits next to each other.
+        // XOR makes the four bits of an octant 0 if its group has this name. The following steps combine the
+        // four bits of each octant into one bit, and collect these bits in the lowest byte.
         let mut other = self.0 ^ (name * 0x1111_1111);
         other |= other >> 2;
         other |= other >> 1;
@@ -150,12 +150,12 @@ id! {
     PointId
 }
 
-/// Grouping of the voxels at every lattice point of a grid.
+/// Groups of the voxels at every lattice point of a grid.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Connectivity<D: Dim> {
-    /// Number of lattice points on each axis: voxels + 1 (1 on the third axis in 2D).
+    /// Number of lattice points on each axis: the number of voxels + 1, or 1 on the third axis in 2D.
     size: Point,
     groups: Vec<Groups>,
     dim: PhantomData<D>,
@@ -164,8 +164,8 @@ pub struct Connectivity<D: Dim> {
 hash_state! { [D: Dim] struct Connectivity<D> { size, groups } skip { dim } }
 
 impl<D: Dim> Connectivity<D> {
-    /// Returns the connectivity of the uncut body: voxels at a point are in one group if closed faces around
-    /// the point connect them.
+    /// Returns the connectivity of the uncut body: voxels at a lattice point form one group if closed faces
+    /// around the point connect them.
     #[inline(never)]
     pub fn new(grid: &VoxelGrid<D>) -> Self {
         let mut size = grid.size();
@@ -181,7 +181,8 @@ impl<D: Dim> Connectivity<D> {
             .collect();
         let dim = PhantomData;
         let mut connectivity = Self { size, groups, dim };
-        // A point with all octants solid needs no regrouping unless a neighbour changes.
+        // Only points with an empty octant can need regrouping at first. If the groups at such a point
+        // change, `normalise` continues with the neighbouring points.
         let is_partial = |&at: &Point| connectivity.groups(at) != Groups::joined(D::ALL_CORNERS);
         let partial = connectivity.points().filter(is_partial).collect();
         connectivity.normalise(partial);
@@ -203,7 +204,7 @@ impl<D: Dim> Connectivity<D> {
         self.groups.len()
     }
 
-    /// Returns whether a point belongs to the lattice.
+    /// Returns whether a point lies in the lattice of this grid.
     #[inline]
     pub fn contains(&self, at: Point) -> bool {
         (0..3).all(|axis| at[axis] >= 0 && at[axis] < self.size[axis])
@@ -215,7 +216,7 @@ impl<D: Dim> Connectivity<D> {
         ((at[2] * self.size[1] + at[1]) * self.size[0] + at[0]) as usize
     }
 
-    /// Returns the grouping at a point; [`Groups::NONE`] outside the lattice.
+    /// Returns the groups at a lattice point; [`Groups::NONE`] outside the lattice.
     #[inline]
     pub fn groups(&self, at: Point) -> Groups {
         if self.contains(at) {
@@ -225,12 +226,13 @@ impl<D: Dim> Connectivity<D> {
         }
     }
 
-    /// Returns the mask of the voxels around a solid voxel that share a node with it, including itself. Bit x
-    /// + 3 y + 9 z stands for the offset (x, y, z) − 1.
+    /// Returns the mask of those voxels in the 3 × 3 (× 3) block around a solid voxel that share a node with
+    /// the voxel. The voxel itself is included. Bit x + 3 y + 9 z stands for the voxel at the offset (x − 1,
+    /// y − 1, z − 1).
     pub fn connected_voxels(&self, voxel: Point) -> u32 {
         let mut bound = 0;
         for octant in 0..D::CORNERS {
-            // Lattice point around which the voxel is in this octant.
+            // Lattice point that has the voxel in its octant `octant`.
             let mut at = voxel;
             (0..D::N).for_each(|axis| at[axis] += 1 - (octant >> axis & 1) as i32);
             let group = self.groups(at).group_of(octant);
@@ -243,12 +245,12 @@ impl<D: Dim> Connectivity<D> {
         bound
     }
 
-    /// Returns the groupings at a point and its neighbours.
+    /// Returns the groups at a lattice point and at its neighbouring lattice points.
     pub fn around(&self, at: Point) -> PointNeighbourhood<D> {
         let mut groups = [Groups::NONE; 27];
         let is_inner = (0..D::N).all(|axis| at[axis] > 0 && at[axis] + 1 < self.size[axis]);
         if is_inner {
-            // Points along the first axis are adjacent in memory.
+            // Lattice points along the first axis are adjacent in memory, so three are copied at once.
             let below = D::depth(3) as i32 / 2;
             for (row, three) in groups[..D::SLOTS].chunks_exact_mut(3).enumerate() {
                 let (y, z) = (row as i32 % 3 - 1, row as i32 / 3 - below);
@@ -266,7 +268,7 @@ impl<D: Dim> Connectivity<D> {
         }
     }
 
-    /// Returns the given lattice points and their neighbours, each once, in memory order.
+    /// Returns the given lattice points and their neighbouring lattice points, each once, in memory order.
     pub fn all_around(&self, points: &[Point]) -> Vec<Point> {
         let near = { points.iter() }.flat_map(|&point| neighbourhood::<D>(point, 1));
         self.each_once(near.filter(|&near| self.contains(near)))
@@ -284,14 +286,14 @@ impl<D: Dim> Connectivity<D> {
         [place % x, place / x % y, place / x / y]
     }
 
-    /// Returns whether a crack can start or continue at a point: an octant is empty, the point has more than
-    /// one group, or one of the faces around it is open.
+    /// Returns whether a crack can start or continue at a lattice point: an octant around the point is empty,
+    /// the point has more than one group, or a face around the point is not closed.
     pub fn is_open(&self, at: Point) -> bool {
         self.around(at).is_open()
     }
 
-    /// Splits the groups at `at` into the octants of `side` and the others. Returns whether anything changed;
-    /// [`Connectivity::normalise`] must follow.
+    /// Splits each group at the lattice point `at` into its octants inside and outside the mask `side`.
+    /// Returns whether a group was split. The caller must then call [`Connectivity::normalise`].
     pub fn release(&mut self, at: Point, side: u8) -> bool {
         if !self.contains(at) {
             return false;
@@ -300,7 +302,8 @@ impl<D: Dim> Connectivity<D> {
         self.groups[index].release(side)
     }
 
-    /// Returns whether connectivity read from a file groups the voxels of `grid`, by closed faces only.
+    /// Returns whether connectivity read from a file is valid: it groups exactly the voxels of `grid`, and
+    /// the voxels of each group are connected by closed faces.
     #[cfg(feature = "serde")]
     pub(crate) fn is_valid(&self, grid: &VoxelGrid<D>) -> bool {
         let whole = Self::new(grid);
@@ -311,8 +314,8 @@ impl<D: Dim> Connectivity<D> {
                 octants.for_each(|octant| named.put(octant, name));
                 named
             });
-            // Checks that exactly the octants with a voxel have groups, and that no group is larger than
-            // before any release.
+            // Exactly the octants with a voxel must have groups, and each group must lie in one group of the
+            // uncut body.
             let is_part = |group: u8| {
                 let of = whole.group_of(group.trailing_zeros() as usize);
                 group & !of == 0
@@ -325,8 +328,9 @@ impl<D: Dim> Connectivity<D> {
             && self.clone().normalise(self.points().collect()).is_empty()
     }
 
-    /// Regroups the voxels at each point of `work` by closed faces only. Continues with the neighbours of
-    /// each point that changed. Returns the changed points, ascending and without duplicates.
+    /// Splits the groups at each lattice point of `work` into parts that closed faces connect. If this
+    /// changes a point, continues with its neighbouring points. Returns the changed points, each once, in
+    /// memory order.
     #[inline(never)]
     pub fn normalise(&mut self, mut work: Vec<Point>) -> Vec<Point> {
         let mut changed = Vec::new();
@@ -344,40 +348,41 @@ impl<D: Dim> Connectivity<D> {
     }
 }
 
-/// Voxel groups at a lattice point and at its neighbours. They determine which voxels around the point exist,
-/// and which faces between these voxels are closed.
+/// Groups at a lattice point and at its neighbouring lattice points. They determine which of the voxels
+/// around the point exist, and which of the faces between these voxels are closed.
 #[derive(Copy, Clone, Debug)]
 pub struct PointNeighbourhood<D: Dim> {
-    /// Groupings of the 9 or 27 points, the first axis fastest; the point itself is in the middle.
+    /// Groups at the 9 or 27 lattice points, the first axis fastest; the central point is in the middle.
     groups: [Groups; 27],
     dim: PhantomData<D>,
 }
 
 impl<D: Dim> PointNeighbourhood<D> {
-    /// Distance in `groups` between neighbours along each axis.
+    /// Difference between the indices in `groups` of lattice points that are neighbours along each axis.
     const STEPS: [usize; 3] = [1, 3, 9];
 
-    /// Returns the grouping at the point itself.
+    /// Returns the groups at the central lattice point.
     pub fn middle(&self) -> Groups {
         self.groups[D::SLOTS / 2]
     }
 
-    /// Returns whether the face between `octant` and its neighbour across `axis`, seen from the point, is
-    /// closed: both voxels exist and share a node at all of its corners.
+    /// Returns whether the face between the voxel in `octant` of the central lattice point and the next voxel
+    /// across `axis` is closed: both voxels exist and share a node at all corners of the face.
     #[inline]
     pub fn is_closed(&self, octant: usize, axis: usize) -> bool {
         self.is_closed_from(D::SLOTS / 2, octant, axis)
     }
 
-    /// Of the two faces across `axis` of the voxel in `octant`, returns whether the one away from the point
-    /// is closed.
+    /// Returns whether the voxel in `octant` of the central lattice point has a closed face on the side along
+    /// `axis` that faces away from the point.
     #[inline]
     pub fn is_far_face_closed(&self, octant: usize, axis: usize) -> bool {
         let from = Self::towards(D::SLOTS / 2, octant, axis);
         self.is_closed_from(from, octant ^ 1 << axis, axis)
     }
 
-    /// Returns, for each axis, the mask of the octants on the near side of a closed face across that axis.
+    /// Returns, for each axis, the mask of the octants on the low side of a closed face that is perpendicular
+    /// to the axis and meets the central lattice point.
     pub fn closed_faces(&self) -> [u8; 3] {
         let mut closed = [0; 3];
         for axis in 0..D::N {
@@ -390,13 +395,15 @@ impl<D: Dim> PointNeighbourhood<D> {
         closed
     }
 
-    /// Returns whether a crack can start or continue at the point: see [`Connectivity::is_open`].
+    /// Returns whether a crack can start or continue at the central lattice point: see
+    /// [`Connectivity::is_open`].
     pub fn is_open(&self) -> bool {
         let groups = self.middle();
         if groups != Groups::joined(D::ALL_CORNERS) {
             return groups != Groups::NONE;
         }
-        // Fast test for most points of a body: if all points around are full and uncut, no face is open.
+        // Most points of a body pass the fast test `is_whole`: without empty octants and cracks nearby, all
+        // faces are closed.
         let is_open = |(faces, far): (u8, u8)| faces != D::ALL_CORNERS & !far;
         !self.is_whole()
             && self
@@ -407,7 +414,7 @@ impl<D: Dim> PointNeighbourhood<D> {
                 .any(is_open)
     }
 
-    /// Regroups the voxels at the point by closed faces only.
+    /// Returns the groups at the central lattice point, split into parts that closed faces connect.
     fn joined_by_faces(&self) -> Groups {
         let mut groups = Groups::apart(self.middle().solid());
         if groups == self.middle() || self.is_whole() {
@@ -422,14 +429,15 @@ impl<D: Dim> PointNeighbourhood<D> {
         groups
     }
 
-    /// Returns whether the point and all its neighbours have eight (in 2D four) voxels in one group.
+    /// Returns whether all eight (in 2D four) octants form one group at the central lattice point and at each
+    /// of its neighbours.
     fn is_whole(&self) -> bool {
         let full = Groups::joined(D::ALL_CORNERS);
         self.groups[..D::SLOTS].iter().all(|&groups| groups == full)
     }
 
-    /// Implements [`PointNeighbourhood::is_closed`], seen from the point at index `place` of `groups`. All
-    /// corners of the face must have an entry in `groups`.
+    /// Implements [`PointNeighbourhood::is_closed`] for the octant `octant` of the lattice point at index
+    /// `place` of `groups`. All corners of the face must have an entry in `groups`.
     #[inline]
     fn is_closed_from(&self, place: usize, octant: usize, axis: usize) -> bool {
         (0..D::CORNERS / 2).all(|corner| {
@@ -445,8 +453,8 @@ impl<D: Dim> PointNeighbourhood<D> {
         })
     }
 
-    /// Returns the index in `groups` of the next point along an axis, on the side of that axis where `octant`
-    /// is.
+    /// Returns the index in `groups` of the lattice point after the one at index `place`, along `axis` and on
+    /// the side where `octant` lies.
     #[inline]
     fn towards(place: usize, octant: usize, axis: usize) -> usize {
         if octant >> axis & 1 == 1 {
@@ -457,7 +465,8 @@ impl<D: Dim> PointNeighbourhood<D> {
     }
 }
 
-/// Returns the faces that meet at a lattice point, each as its low octant and its axis.
+/// Returns the faces that meet at a lattice point. Each face is given by the octant on its low side and by
+/// the axis to which it is perpendicular.
 pub fn faces_around<D: Dim>() -> impl Iterator<Item = (usize, usize)> {
     (0..D::N).flat_map(|axis| {
         (0..D::CORNERS)
@@ -484,7 +493,8 @@ mod tests {
 
     #[test]
     fn normalise_removes_hinge_when_crack_reaches_far_side() {
-        // Release the middle column of a 4 × 2 grid point by point: the last release separates it.
+        // Releases the lattice points of the middle column of a 4 × 2 grid one after the other. After the
+        // second release, `normalise` also splits the last point of the column.
         let grid = VoxelGrid::<Dim2>::from_fn([4, 2, 1], 1.0, |_| 1).unwrap();
         let mut connectivity = Connectivity::new(&grid);
         assert!(connectivity.release([2, 0, 0], 0b1010));
@@ -508,7 +518,8 @@ mod tests {
         connectivity.release([3, 3, 3], 0b1010_1010);
         connectivity.normalise(neighbourhood::<Dim3>([3, 3, 3], 1).collect());
         assert_eq!(connectivity.groups([3, 3, 3]).iter().count(), 2);
-        // The four faces across x are open, so the points in that plane are the front of the crack.
+        // The release opens the four faces across x around the released point. The other corners of these
+        // faces form the front of the crack, so they are open points, too.
         assert!(connectivity.is_open([3, 4, 4]) && connectivity.is_open([3, 2, 3]));
         assert_eq!(
             connectivity.groups([3, 4, 4]),

@@ -1,9 +1,9 @@
 //! Element class: the children that an element fills, and the slots that carry a node.
 //!
-//! Every node of an element lies on its 3 × 3 (× 3) lattice of slots. The number of 1s among the coordinates
-//! of a slot gives its kind: 0 corner, 1 edge middle, 2 face centre, 3 centre. Rest offsets, gradient
-//! weights, volumes and masses depend on the class only, and scale with powers of the element size. So they
-//! are computed once per class.
+//! Every node of an element lies on its 3 × 3 (× 3) lattice of slots. The coordinates of a slot are 0, 1 or
+//! 2. The number of 1s among them gives the kind of the slot: 0 corner, 1 edge middle, 2 face centre, 3 cell
+//! centre. Rest offsets, gradients, volumes and masses depend on the class only, and scale with powers of the
+//! element size. They are therefore computed once per class.
 
 use crate::foundation::dim::{Dim, Point, add, corner};
 use crate::foundation::hash::hash_state;
@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::fmt;
 use std::marker::PhantomData;
 
-/// Coordinates of a slot, each 0, 1 or 2.
+/// Coordinates of a slot: along each axis, 0 = low side of the cell, 1 = middle, 2 = high side.
 pub fn slot_at(slot: usize) -> Point {
     [
         (slot % 3) as i32,
@@ -25,7 +25,7 @@ pub fn slot_index(at: Point) -> usize {
     (at[0] + 3 * at[1] + 9 * at[2]) as usize
 }
 
-/// Returns the mask of the slots in the closure of a mask of children: the corners of all of them.
+/// Returns the mask of the slots that are corners of at least one child in the mask `children`.
 pub fn closure<D: Dim>(children: u8) -> u32 {
     let mut slots = 0;
     for child in (0..D::CORNERS).filter(|child| children >> child & 1 == 1) {
@@ -43,7 +43,8 @@ pub fn cell_corners<D: Dim>() -> u32 {
     })
 }
 
-/// Error: an element class has no node at a corner that carries a share of the volume or area.
+/// Error: a slot at a corner receives a part of the volume or of the surface of the element, but carries no
+/// node.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MissingCorner {
     /// Slot without a node.
@@ -62,7 +63,7 @@ impl fmt::Display for MissingCorner {
 
 impl std::error::Error for MissingCorner {}
 
-/// Geometry of an element class, for children of edge length 1.
+/// Geometry of an element class. Lengths are in widths of a child, that is, half widths of the cell.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -71,18 +72,20 @@ pub struct ElementClass<D: Dim> {
     pub children: u8,
     /// Slots that carry a node, ascending.
     pub slots: Vec<u8>,
-    /// Mask of `slots`.
+    /// Mask of the slots that carry a node: bit s for slot s.
     pub mask: u32,
-    /// Rest offset of each node from the volume centroid.
+    /// Offset of each node from the volume centroid of the undeformed element.
     pub offsets: Vec<DVec3>,
-    /// ∂V/∂x of each node at rest: an exact gradient for every polygon or polyhedron [Beirao da Veiga 2013].
-    /// With the gradient b of each node, Σ x bᵀ = V F for every affine motion.
+    /// Gradient b of each node: the derivative ∂V/∂x of the volume at rest. With the node positions x and the
+    /// deformation gradient F, Σ x bᵀ = V F for every affine motion and every polygon or polyhedron [Beirao
+    /// da Veiga 2013].
     pub gradients: Vec<DVec3>,
-    /// Part of the volume that belongs to each node.
+    /// Part of `volume` that each node represents; it determines the mass of the node.
     pub volumes: Vec<f64>,
-    /// Volume: number of filled children.
+    /// Volume of the undeformed element: the number of filled children.
     pub volume: f64,
-    /// Stiffness of the hourglass modes relative to those of a plain cell: see [`ElementClass::new`].
+    /// Stiffness of the hourglass modes relative to that of a plain element, which fills a whole cell and has
+    /// nodes only at its corners: see [`ElementClass::new`].
     pub hourglass: f64,
     dim: PhantomData<D>,
 }
@@ -94,16 +97,17 @@ hash_state! {
 }
 
 impl<D: Dim> ElementClass<D> {
-    /// Computes the class that fills `children` and carries nodes on `slots`.
+    /// Computes the class that fills `children` and carries nodes on the slots of the mask `slots`.
     ///
-    /// Each exposed face of a child distributes its area vector in equal parts to its corners, and each child
-    /// its volume. A slot without a node passes its share in equal parts to its neighbours of lower order:
-    /// the centre to the face centres, a face centre to its edge middles, an edge middle to its ends. Only
-    /// the pattern of the face itself matters, so both sides of a shared face agree. This makes a graded mesh
-    /// pass the patch test.
+    /// Each filled child distributes its volume in equal parts to its corners. Each face of the element's
+    /// surface distributes its area vector in equal parts to its corners; the sums are the gradients. A slot
+    /// without a node passes its share in equal parts to its neighbours: the centre to the face centres, a
+    /// face centre to its edge middles, an edge middle to the two corners of the edge. The distribution
+    /// depends only on the slots in the face itself. The elements on both sides of a face therefore agree,
+    /// and a graded mesh passes the patch test.
     ///
-    /// The stiffness of the hourglass modes follows from pure bending: the softest bending mode determines
-    /// it.
+    /// The stiffness of the hourglass modes follows from the energy of pure bending, in the direction in
+    /// which the element is softest.
     ///
     /// # Errors
     /// [`MissingCorner`] if a corner slot without a node would receive a share.
@@ -164,21 +168,23 @@ impl<D: Dim> ElementClass<D> {
         Ok(element_class)
     }
 
-    /// Returns the index of the node of a slot, if the slot has one.
+    /// Returns the index, among the nodes of the class, of the node on a slot; `None` if the slot carries no
+    /// node.
     #[inline(always)]
     pub fn node_at(&self, slot: usize) -> Option<usize> {
         let before = self.mask & ((1 << slot) - 1);
         (self.mask >> slot & 1 == 1).then_some(before.count_ones() as usize)
     }
 
-    /// Returns the stiffness of the hourglass modes, relative to a plain cell, that gives them the energy of
-    /// pure bending. It is the minimum over all bending modes, so that the element is too stiff in none of
+    /// Returns the stiffness of the hourglass modes, relative to a plain element, that gives them the energy
+    /// of pure bending. It is the minimum over all bending modes, so that the element is too stiff in none of
     /// them.
     ///
     /// Bending along axis a towards axis b is u = x_a x_b e_a − ½ x_a² e_b. Without lateral contraction its
-    /// energy is Y/2 ∫ x_b² dV, and the hourglass term of [`crate::soft_body::element_law`] stores k/2 Σ V_i |h_i|². A plain
-    /// cell has Σ V_i |h_i|² = V = 3 ∫ x_b² dV. The sum is a smaller part of the integral if mid nodes take
-    /// volume from the corners, or if children are missing.
+    /// energy is Y/2 ∫ x_b² dV, and the hourglass term of [`crate::soft_body::element_law`] stores k/2 Σ V_i
+    /// |h_i|². A plain element has Σ V_i |h_i|² = V = 3 ∫ x_b² dV. The sum is smaller relative to the
+    /// integral if mid nodes take volume from the corners, or if children are missing. Such an element needs
+    /// a larger k.
     fn least_bending(&self) -> f64 {
         let mut least = f64::INFINITY;
         for towards in 0..D::N {
@@ -197,7 +203,7 @@ impl<D: Dim> ElementClass<D> {
         least
     }
 
-    /// Returns ∫ x² dV of the children along an axis, about the centroid.
+    /// Returns the second moment ∫ x² dV of the filled children along an axis, about their centroid.
     fn second_moment(&self, axis: usize) -> f64 {
         let sides = (0..D::CORNERS).filter(|child| self.children >> child & 1 == 1);
         let sides: Vec<f64> = sides.map(|child| (child >> axis & 1) as f64).collect();
@@ -206,8 +212,8 @@ impl<D: Dim> ElementClass<D> {
         parts.sum::<f64>() + self.volume / 12.0
     }
 
-    /// Returns Σ V_i |h_i|² for displacements of the nodes; h_i is the displacement of node i less its affine
-    /// part.
+    /// Returns Σ V_i |h_i|² for the displacements `moved` of the nodes. h_i is the displacement of node i
+    /// without its affine part, and V_i is the volume of the node.
     fn not_affine(&self, moved: &[DVec3]) -> f64 {
         let (mut slope, mut mean) = ([DVec3::ZERO; 3], DVec3::ZERO);
         for (k, u) in moved.iter().enumerate() {
@@ -229,13 +235,14 @@ impl<D: Dim> ElementClass<D> {
         sum
     }
 
-    /// Returns whether the class is a whole cell with nodes only in its corners.
+    /// Returns whether the element is plain: it fills a whole cell and has nodes only at its corners.
     pub fn is_plain(&self) -> bool {
         self.children == D::ALL_CORNERS && self.slots.len() == D::CORNERS
     }
 }
 
-/// Passes the shares of each slot without a node, in equal parts, to the adjacent slots of lower order.
+/// Distributes the share of each slot without a node in equal parts to adjacent slots: from the cell centre
+/// to face centres, from these to edge middles, from these to corners.
 fn distribute_shares<D: Dim, const K: usize>(
     shares: &mut [[f64; K]; 27],
     nodes: u32,
@@ -267,8 +274,8 @@ mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
 
-    /// Checks that Σ x bᵀ = V·I, with the offsets x, gradients b and volume V of a class. The class must
-    /// carry at least the corners of the outline of its children.
+    /// Checks that Σ x bᵀ = V·I, with the offset x and gradient b of each node, the volume V and the identity
+    /// I. `slots` must contain at least the corners of the outline of `children`.
     fn check_gradient_is_exact<D: Dim>(children: u8, slots: u32) {
         let element_class = ElementClass::<D>::new(children, slots).unwrap();
         for i in 0..D::N {
@@ -300,7 +307,7 @@ mod tests {
         }
     }
 
-    /// Stiffness of the hourglass modes in classes that can be computed by hand.
+    /// Compares the stiffness of the hourglass modes with values computed by hand.
     #[test]
     fn hourglass_stiffness_matches_bending_energy() {
         fn check<D: Dim>(children: u8, slots: u32, expected: f64) {
@@ -313,12 +320,12 @@ mod tests {
         let (square, cube) = (cell_corners::<Dim2>(), cell_corners::<Dim3>());
         check::<Dim2>(15, square, 1.0);
         check::<Dim3>(255, cube, 1.0);
-        // A single child is a plain cell of half the width: |h|² is 16 times smaller and x² only 4 times, so
-        // the stiffness is 4.
+        // A single child is a plain element of half the width. Compared with a plain element of full width,
+        // |h|² is 16 times smaller and x² only 4 times, so the stiffness is 4.
         check::<Dim2>(1, closure::<Dim2>(1), 4.0);
         check::<Dim3>(1, closure::<Dim3>(1), 4.0);
-        // With all edge middles, corners keep a quarter of the volume. The term ½ x_a² adds 15/256 to Σ V_i
-        // |h_i|².
+        // Nodes on all edge middles leave a quarter of the volume to the corners. The term ½ x_a² of the
+        // bending mode adds 15/256 to Σ V_i |h_i|².
         let middles = [[1, 0, 0], [0, 1, 0], [2, 1, 0], [1, 2, 0]];
         let all = middles
             .iter()

@@ -1,4 +1,4 @@
-//! Voxel grids: the solid voxels, and their materials, from which a body starts.
+//! Voxel grids: the shape of a body before any crack, as solid voxels with materials.
 
 use crate::error::Error;
 use crate::foundation::dim::{Dim, Point, points_in};
@@ -12,10 +12,11 @@ mod shapes;
 /// Largest number of voxels on one axis. At this distance from the origin, single precision still resolves
 /// 1/10000 of a voxel.
 pub const MAX_EXTENT: usize = 1024;
-/// Largest number of voxels in the box of a grid, solid or not. Such a box takes 64 MiB, and 32 bits can
-/// number eight corners of each voxel.
+/// Largest number of voxels in the box of a grid, solid or not. The materials of this many voxels take 64
+/// MiB, and a 32-bit id can number the eight corners of each voxel.
 pub const MAX_VOXELS: usize = 1 << 26;
-/// Valid edge lengths of a voxel [m]. Beyond them, volumes and positions leave the range of single precision.
+/// Valid edge lengths of a voxel [m]. With other lengths, volumes and positions leave the range of single
+/// precision.
 pub const VOXEL_SIZES: RangeInclusive<f32> = 1e-6..=1e3;
 
 /// Box of voxels, each empty (0) or of a material (1 to 255).
@@ -26,7 +27,7 @@ pub struct VoxelGrid<D: Dim> {
     size: Point,
     voxel_size: f32,
     materials: Vec<u8>,
-    /// Whether each voxel was removed with its piece; empty if no voxel was.
+    /// For each voxel, whether it was removed with its piece. An empty list means that no voxel was removed.
     taken_out: Vec<bool>,
     dim: PhantomData<D>,
 }
@@ -34,8 +35,8 @@ pub struct VoxelGrid<D: Dim> {
 hash_state! { [D: Dim] struct VoxelGrid<D> { size, voxel_size, materials, taken_out } skip { dim } }
 
 impl<D: Dim> VoxelGrid<D> {
-    /// Creates a grid of `size` voxels with edge length `voxel_size` [m]; `material` returns the material of
-    /// each voxel (0 = empty).
+    /// Creates a grid of `size` voxels with edge length `voxel_size` [m]; `material` returns the material
+    /// number of each voxel (0 = empty).
     ///
     /// # Errors
     /// [`Error::EmptyGrid`] if no voxel is solid. [`Error::InvalidParameter`] if the grid is too large, or not flat
@@ -51,10 +52,12 @@ impl<D: Dim> VoxelGrid<D> {
         Self::checked(size, voxel_size, materials)
     }
 
-    /// Creates a grid from voxel values in memory order, the first axis fastest.
+    /// Creates a grid from the material number of each voxel (0 = empty), in memory order, the first axis
+    /// fastest.
     ///
     /// # Errors
-    /// See [`VoxelGrid::from_fn`]; also if the number of values does not match the size.
+    /// See [`VoxelGrid::from_fn`]. Also [`Error::InvalidParameter`] if the length of `materials` does not
+    /// match the size.
     pub fn from_materials(
         size: [usize; 3],
         voxel_size: f32,
@@ -102,7 +105,7 @@ impl<D: Dim> VoxelGrid<D> {
         })
     }
 
-    /// Multiplies all lengths by `factor`; the number of voxels stays the same.
+    /// Returns the grid with all lengths multiplied by `factor` and with the same number of voxels.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] if the new voxel size is outside [`VOXEL_SIZES`].
@@ -131,13 +134,13 @@ impl<D: Dim> VoxelGrid<D> {
         self.voxel_size
     }
 
-    /// Returns the number of solid voxels.
+    /// Returns the number of solid voxels, with those that were removed.
     #[inline(never)]
     pub fn solid_count(&self) -> usize {
         self.materials.iter().filter(|&&m| m != 0).count()
     }
 
-    /// Returns the material of a voxel: 0 if it is empty or outside the grid.
+    /// Returns the material number of a voxel: 0 if the voxel is empty or outside the grid.
     #[inline]
     pub fn material(&self, voxel: Point) -> u8 {
         let inside = (0..3).all(|axis| voxel[axis] >= 0 && voxel[axis] < self.size[axis]);
@@ -148,7 +151,7 @@ impl<D: Dim> VoxelGrid<D> {
         }
     }
 
-    /// Returns whether a voxel is solid; voxels outside the grid are not.
+    /// Returns whether a voxel is solid; false outside the grid.
     #[inline]
     pub fn is_solid(&self, voxel: Point) -> bool {
         self.material(voxel) != 0
@@ -161,7 +164,7 @@ impl<D: Dim> VoxelGrid<D> {
         self.is_solid(voxel) && (self.taken_out.is_empty() || !self.taken_out[self.index(voxel)])
     }
 
-    /// Returns the number of solid voxels that were not removed.
+    /// Returns the number of solid voxels without those that were removed.
     #[inline(never)]
     pub fn left_count(&self) -> usize {
         let gone = self.taken_out.iter().filter(|&&gone| gone).count();
@@ -189,7 +192,8 @@ impl<D: Dim> VoxelGrid<D> {
         ((voxel[2] * self.size[1] + voxel[1]) * self.size[0] + voxel[0]) as usize
     }
 
-    /// Returns whether a grid read from a file is valid.
+    /// Returns whether a grid read from a file has a valid size and voxel size, and a valid list of removed
+    /// voxels.
     #[cfg(feature = "serde")]
     pub(crate) fn is_valid(&self) -> bool {
         let size = self.size.map(|extent| usize::try_from(extent).unwrap_or(0));

@@ -1,8 +1,9 @@
 //! Graded mesh: the elements and nodes that follow from the solid voxels and their connectivity.
 //!
-//! A node is a lattice point together with one group of voxels there. It exists exactly if it is a corner of
-//! the cell of some element, at a child that the element fills. Every element carries all nodes in the
-//! closure of its children. Hanging nodes are true nodes of the larger element.
+//! A node is a lattice point together with one group of voxels around the point. The node exists if the point
+//! is a corner of an element's cell, and the element fills the child at this corner. Every element carries
+//! all nodes that lie at corners of its filled children. Hanging nodes are therefore ordinary nodes of the
+//! larger element.
 //!
 //! ```text
 //!   ┌───┬─┬─┐     the level-1 element on the left carries five nodes: its four corners and the
@@ -27,7 +28,7 @@ use crate::topology::grid::VoxelGrid;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Elastic element on a cell or on a face-connected part of a cell.
+/// Elastic element: fills a cell, or a face-connected part of the children of a cell.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Element {
@@ -37,19 +38,19 @@ pub struct Element {
     pub children: u8,
     /// Index of the element class, see [`Mesh::element_class`].
     pub element_class: u32,
-    /// Nodes, in the order of the slots of the class.
+    /// Ids of the nodes, in the order of the slots of the class.
     pub nodes: Vec<NodeId>,
 }
 
 hash_state! { struct Element { cell, children, element_class, nodes } }
 
-/// Mass point: a lattice point, and the octants of the voxel group that shares it.
+/// Mass point: a lattice point, and the group of voxels around the point that share the node.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Node {
-    /// Lattice point at rest.
+    /// Lattice point of the node in the undeformed body.
     pub at: Point,
-    /// Mask of the octants of the voxels around the point that share this node.
+    /// Mask of the octants around the lattice point whose voxels share this node.
     pub group: u8,
 }
 
@@ -63,18 +64,19 @@ pub struct Mesh<D: Dim> {
     elements: IndexVec<ElementId, Option<Element>>,
     nodes: IndexVec<NodeId, Node>,
     element_classes: Vec<ElementClass<D>>,
-    /// Whether every lattice point of the surface is a node, regardless of the size of the elements there.
+    /// Whether every lattice point of the surface is a node even if the elements at the surface are large:
+    /// true for [`Grading::Coarse`] only.
     dense_surface: bool,
     places: CellIndexing,
-    /// Elements of each cell, by the index of the cell.
+    /// Ids of the elements of each cell, by the index of the cell.
     by_cell: IdLists<ElementId>,
-    /// Element that owns each voxel, as element id + 1 at the index of the voxel's level-0 cell; 0 without an
+    /// Element that contains each voxel, as element id + 1, by the index of the voxel's level-0 cell; 0 = no
     /// element.
     owners: Vec<u32>,
-    /// Nodes at each lattice point, by the index of the point.
+    /// Ids of the nodes at each lattice point, by the index of the point.
     by_point: IdLists<NodeId>,
     classes: BTreeMap<(u8, u32), u32>,
-    /// Number of elements that carry each node; 0 = the id is free.
+    /// Number of elements that have each node, by node id; 0 = no node has the id.
     carriers: IndexVec<NodeId, u8>,
     free_elements: Vec<ElementId>,
     free_nodes: Vec<NodeId>,
@@ -87,7 +89,7 @@ hash_state! {
     }
 }
 
-/// Violated invariant of a mesh, as text.
+/// Description of a violated invariant of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InvariantViolation(String);
 
@@ -113,7 +115,7 @@ impl From<MissingCorner> for InvariantViolation {
 }
 
 impl<D: Dim> Mesh<D> {
-    /// Builds the elements of a body from scratch.
+    /// Builds the elements and the nodes of a body from scratch.
     ///
     /// # Errors
     /// An [`InvariantViolation`] if the cell hierarchy does not match this grid and connectivity.
@@ -182,7 +184,7 @@ impl<D: Dim> Mesh<D> {
         self.elements.len()
     }
 
-    /// Returns whether an element carries the node with this id.
+    /// Returns whether at least one element has the node with this id; otherwise the node was removed.
     pub fn is_alive(&self, id: NodeId) -> bool {
         self.carriers[id] > 0
     }
@@ -200,8 +202,8 @@ impl<D: Dim> Mesh<D> {
         self.elements.get(id.index())?.as_ref()
     }
 
-    /// Returns the elements that carry a node, each with the index of the node in the element. The order is
-    /// that of the octants around the node, which does not depend on the numbering of elements.
+    /// Returns the elements that have a node, each with the index of the node in the element's list of nodes.
+    /// The order is that of the octants around the node, so it does not depend on the ids of elements.
     pub fn carriers_of(&self, id: NodeId) -> impl Iterator<Item = (&Element, usize)> {
         self.carrier_ids(id).map(move |owner| {
             let element = self.alive(owner);
@@ -213,7 +215,7 @@ impl<D: Dim> Mesh<D> {
         })
     }
 
-    /// Returns the ids of the elements that carry a node, in the order of the octants around it.
+    /// Returns the ids of the elements that have a node, in the order of the octants around the node.
     pub fn carrier_ids(&self, id: NodeId) -> impl Iterator<Item = ElementId> + use<D> {
         let node = self.node(id);
         let (mut carriers, mut count) = ([ElementId(0); 8], 0);
@@ -226,7 +228,7 @@ impl<D: Dim> Mesh<D> {
         carriers.into_iter().take(count)
     }
 
-    /// Returns the number of elements on each level, finest first.
+    /// Returns the number of elements on each level, level 0 first.
     #[inline(never)]
     pub fn elements_per_level(&self) -> Vec<usize> {
         let mut counts = Vec::new();
@@ -247,23 +249,23 @@ impl<D: Dim> Mesh<D> {
             .sum()
     }
 
-    /// Returns the class of an element.
+    /// Returns the element class of an element.
     pub fn element_class(&self, element: &Element) -> &ElementClass<D> {
         &self.element_classes[element.element_class as usize]
     }
 
-    /// Returns the id of the element that owns a solid voxel; `None` for an empty voxel.
+    /// Returns the id of the element that contains a solid voxel; `None` for an empty voxel.
     pub fn owner(&self, voxel: Point) -> Option<ElementId> {
         owner(self.owners[self.places.index(Cell::of(voxel))?])
     }
 
-    /// Returns the element that owns a solid voxel; `None` for an empty voxel.
+    /// Returns the element that contains a solid voxel; `None` for an empty voxel.
     pub(crate) fn element_at(&self, voxel: Point) -> Option<&Element> {
         self.element(self.owner(voxel)?)
     }
 
-    /// Returns the elements that own the voxels in the given octants around a lattice point, in the order of
-    /// the octants.
+    /// Returns the element that contains the voxel in each of the given octants around a lattice point, in
+    /// the order of the octants. An element that contains several of these voxels occurs several times.
     pub fn owners_around(
         &self,
         at: Point,
@@ -288,7 +290,7 @@ impl<D: Dim> Mesh<D> {
         asked.filter_map(move |octant| owner(owners[octant]))
     }
 
-    /// Returns the first voxel that an element fills.
+    /// Returns the voxel at the low corner of the first child that an element fills.
     pub fn first_voxel(&self, element: &Element) -> Point {
         let child = element.children.trailing_zeros() as usize;
         match element.cell.level {
@@ -297,7 +299,7 @@ impl<D: Dim> Mesh<D> {
         }
     }
 
-    /// Returns the voxels that an element fills.
+    /// Returns all voxels that an element fills.
     pub fn voxels(&self, element: &Element) -> impl Iterator<Item = Point> + use<D> {
         let cell = element.cell;
         let is_voxel = cell.level == 0;
@@ -316,7 +318,7 @@ impl<D: Dim> Mesh<D> {
         })
     }
 
-    /// Returns whether two meshes are equal except for the numbering of elements and nodes.
+    /// Returns whether two meshes are equal except for the ids of elements and nodes.
     #[inline(never)]
     pub fn is_same_as(&self, other: &Self) -> bool {
         self.canonical() == other.canonical()
@@ -328,7 +330,7 @@ impl<D: Dim> Mesh<D> {
             .expect("a cell lists live elements only")
     }
 
-    /// Returns every element as its cell, children and nodes, sorted.
+    /// Returns the cell, children and nodes of every element, sorted, without ids.
     fn canonical(&self) -> Vec<(Cell, u8, Vec<Node>)> {
         let mut all: Vec<_> = self
             .elements()
@@ -341,7 +343,7 @@ impl<D: Dim> Mesh<D> {
         all
     }
 
-    /// Adds an element without nodes and registers it as the owner of its voxels.
+    /// Adds an element without nodes, and records in `owners` that the element contains its voxels.
     fn place(&mut self, cell: Cell, children: u8) {
         let element = Element {
             cell,
@@ -364,15 +366,15 @@ impl<D: Dim> Mesh<D> {
     }
 }
 
-/// Decodes an entry of `owners`.
+/// Returns the element id that an entry of `owners` stands for; `None` for the entry 0.
 fn owner(listed: u32) -> Option<ElementId> {
     listed.checked_sub(1).map(ElementId)
 }
 
-/// Returns the cells that contain a voxel, finest first, each with the index of the child that contains the
-/// voxel.
+/// Returns the cells that contain a voxel, from level 0 up. Each cell comes with the index of its child that
+/// contains the voxel.
 fn path<D: Dim>(voxel: Point) -> impl Iterator<Item = (Cell, usize)> {
-    // The largest grid has 2^10 voxels on an axis.
+    // Ends at level 10, because the largest grid has 2^10 voxels on an axis.
     std::iter::successors(Some((Cell::of(voxel), 0)), |(cell, _)| {
         (cell.level < 10).then(|| (cell.parent(), cell.child_index::<D>()))
     })

@@ -1,10 +1,11 @@
 //! Pieces of a body: connected sets of elements.
 //!
 //! Elements that share a node belong to one piece. A release can divide a piece only at the released points.
-//! At each such point, one search starts on each side of the new crack. All searches advance at the same pace
-//! until they meet or one has no more elements to visit: the elements of that search are a new piece. The
-//! cost is proportional to the smaller side. If many points were released at once, a search that meets an
-//! earlier one continues with its results.
+//! At each such point, one search through the mesh starts on each side of the new crack. All searches advance
+//! at the same pace. Two searches that meet continue as one. A search that has no more elements to visit,
+//! while others still run, has found a new piece. The last running search stops: its elements keep their
+//! piece. The cost is therefore proportional to the smaller side. If many points were released at once, a
+//! search that meets an earlier one continues with its results.
 
 use crate::foundation::dim::Dim;
 use crate::foundation::disjoint_sets::DisjointSets;
@@ -13,20 +14,21 @@ use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::topology::mesh::Mesh;
 use std::collections::{BTreeMap, VecDeque};
 
-/// Marks elements without a piece.
+/// Placeholder for the piece of an element that is not assigned to a piece yet.
 const NONE: PieceId = PieceId(u32::MAX);
 
 /// Connected part of a body.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Piece {
-    /// Whether the piece sleeps: it is not simulated until something touches it.
+    /// Whether the piece sleeps: it is not simulated until something touches or wakes it.
     pub asleep: bool,
-    /// Whether the piece was quarantined: it was no longer finite and was stopped for good.
+    /// Whether the piece was quarantined: a node became non-finite or too fast, and the piece was stopped for
+    /// good.
     pub quarantined: bool,
     /// Whether the piece was [removed](crate::World::remove_piece): only its number remains.
     pub removed: bool,
-    /// Sleep timer: time for which the piece has been slow [s].
+    /// Time for which the piece has been slower than the sleep threshold [s].
     pub sleep_timer: f32,
 }
 
@@ -40,10 +42,12 @@ pub struct Pieces {
     pub list: IndexVec<PieceId, Piece>,
     of_element: IndexVec<ElementId, PieceId>,
     of_node: IndexVec<NodeId, PieceId>,
-    /// Mark of the last search that visited each element; scratch memory of [`Pieces::detach`].
+    /// For each element, the mark of the last search that visited it; each search has marks of its own.
+    /// Scratch memory of [`Pieces::detach`].
     #[cfg_attr(feature = "serde", serde(skip))]
     seen: IndexVec<ElementId, u32>,
-    /// Mark of the last search that visited each node; scratch memory of [`Pieces::detach`].
+    /// For each node, the mark of the last search that visited it; each search has marks of its own. Scratch
+    /// memory of [`Pieces::detach`].
     #[cfg_attr(feature = "serde", serde(skip))]
     node_seen: IndexVec<NodeId, u32>,
     /// Highest mark that a search has used so far.
@@ -53,31 +57,31 @@ pub struct Pieces {
 
 hash_state! { struct Pieces { list, of_element, of_node } skip { seen, node_seen, marked } }
 
-/// Search through the elements on one side of a released point.
+/// Search through the mesh that started on one side of a crack at a released point.
 struct Search {
-    /// Index of this side among the sides of all releases.
+    /// Index of the side at which the search started, among the sides of all released points.
     place: usize,
     found: Vec<ElementId>,
     next: VecDeque<ElementId>,
 }
 
-/// State of the search along the sides of all simultaneous releases.
+/// Searches from all sides of all points that were released at once.
 struct Sides {
-    /// Mark in [`Pieces::seen`] of the elements found from side 0; those found from side k have this mark
-    /// plus k.
+    /// Mark in [`Pieces::seen`] of the elements that the search from side 0 has found. The search from side k
+    /// uses this mark plus k.
     first: u32,
-    /// Sets of sides that are known to be connected with each other.
+    /// Sets of sides that are known to belong to one piece.
     joined: DisjointSets,
     /// Searches that are still running.
     running: VecDeque<Search>,
-    /// Searches that stopped because no other side was left to meet.
+    /// Searches that stopped because no other search of their piece was still running.
     resting: Vec<Search>,
-    /// Pieces detached so far.
+    /// Numbers of the pieces detached by this release.
     born: Vec<PieceId>,
 }
 
 impl Pieces {
-    /// Computes the pieces of a mesh, numbered by their lowest element.
+    /// Computes the pieces of a mesh, numbered in the order of their lowest element ids.
     pub fn new<D: Dim>(mesh: &Mesh<D>) -> Self {
         let mut pieces = Self::default();
         pieces.make_room(mesh);
@@ -136,7 +140,7 @@ impl Pieces {
         self.list[self.of_node[node]].asleep
     }
 
-    /// Makes room for the elements and nodes that a remodelling added.
+    /// Extends the lists to the present number of element ids and node ids.
     pub fn make_room<D: Dim>(&mut self, mesh: &Mesh<D>) {
         self.of_element.resize(mesh.element_capacity(), PieceId(0));
         self.seen.resize(mesh.element_capacity(), 0);
@@ -144,8 +148,8 @@ impl Pieces {
         self.node_seen.resize(mesh.node_capacity(), 0);
     }
 
-    /// Returns whether every element and node id, alive or not, has an existing piece. Checks lists read from
-    /// a file.
+    /// Returns whether a list read from a file has a valid piece for every element id and node id of the
+    /// mesh, used or not.
     #[cfg(feature = "serde")]
     pub(crate) fn has_room<D: Dim>(&self, mesh: &Mesh<D>) -> bool {
         let is_there = |piece: &PieceId| piece.index() < self.list.len();
@@ -158,7 +162,7 @@ impl Pieces {
                 .all(is_there)
     }
 
-    /// Assigns a new node to the piece of the node from which it inherited its state.
+    /// Assigns a new node to the piece of the old node `from`, from which its state is interpolated.
     pub fn inherit(&mut self, node: NodeId, from: NodeId) {
         self.of_node[node] = self.of_node[from];
     }
@@ -168,9 +172,9 @@ impl Pieces {
         self.of_element[element] = self.of_node[nodes[0]];
     }
 
-    /// Determines whether the elements around each released point are still connected; `places` lists these
-    /// elements for each point. Every part that is not connected to the rest of its piece becomes a new
-    /// piece. Returns the numbers of the new pieces.
+    /// Finds the pieces that a release has detached. `places` contains one list of elements for each cluster
+    /// of released points: the elements around these points. If the elements of a list are not connected any
+    /// more, each part except one becomes a new piece. Returns the numbers of the new pieces.
     pub fn detach<D: Dim>(&mut self, mesh: &Mesh<D>, places: &[Vec<ElementId>]) -> Vec<PieceId> {
         if self.marked > u32::MAX / 2 {
             self.marked = 0;
@@ -188,9 +192,9 @@ impl Pieces {
         for around in places {
             self.part_at(mesh, around, &mut sides);
         }
-        // A detached piece may have been the only connection between two sides at different points. The
-        // detached piece has elements at both points, so all points with elements of detached pieces are
-        // searched again, as one.
+        // A detached piece may have been the only connection between two sides at different points, and then
+        // has elements at both points. All points with elements of detached pieces are therefore searched
+        // again, as if they were one point.
         let is_off = |&id: &ElementId| self.of_element(id) >= first_born;
         let beside_off = places.iter().filter(|around| around.iter().any(is_off));
         let around: Vec<ElementId> = beside_off.flatten().copied().collect();
@@ -199,21 +203,22 @@ impl Pieces {
         sides.born
     }
 
-    /// Implements [`Pieces::detach`] for the elements around one released point.
+    /// Implements [`Pieces::detach`] for the elements `around` one cluster of released points.
     fn part_at<D: Dim>(&mut self, mesh: &Mesh<D>, around: &[ElementId], sides: &mut Sides) {
         let mut by_piece: BTreeMap<PieceId, Vec<Vec<ElementId>>> = BTreeMap::new();
         for side in sides_of(mesh, around) {
             let of_piece = by_piece.entry(self.of_element(side[0]));
             of_piece.or_default().push(side);
         }
-        // Searches only pieces with several sides here: elements that are connected at this point need no
-        // search.
+        // Elements on one side are connected at this point. Only pieces with several sides at this point need
+        // a search.
         for starts in by_piece.into_values().filter(|starts| starts.len() > 1) {
             self.follow(mesh, starts, sides);
         }
     }
 
-    /// Runs one search on each side of a piece until all sides have met or only one is left.
+    /// Runs one search from each side `starts` of a piece, until only one is still running. The others have
+    /// merged into a search that they met, or have found new pieces.
     fn follow<D: Dim>(&mut self, mesh: &Mesh<D>, starts: Vec<Vec<ElementId>>, sides: &mut Sides) {
         let first = sides.first;
         let mut known = Vec::new();
@@ -246,8 +251,8 @@ impl Pieces {
         while sides.running.len() > 1 {
             turn %= sides.running.len();
             let Some(id) = sides.running[turn].next.pop_front() else {
-                // Removal from the queue is cheap here, because small pieces are searched completely while
-                // they are near its front.
+                // Removing a search from the queue is cheap here: small pieces are searched completely while
+                // their searches are near the front.
                 let alone = sides
                     .running
                     .remove(turn)
@@ -287,7 +292,8 @@ impl Pieces {
         sides.resting.extend(sides.running.drain(..));
     }
 
-    /// Makes a piece of the given elements; inherits sleep and quarantine from their old piece.
+    /// Moves elements to a new piece. The new piece is asleep or quarantined if the old piece was. Returns
+    /// its number.
     fn split_off<D: Dim>(&mut self, mesh: &Mesh<D>, elements: &[ElementId]) -> PieceId {
         let number = self.list.next_id();
         let whole = &self.list[self.of_element[elements[0]]];
@@ -308,9 +314,9 @@ impl Pieces {
 }
 
 impl Sides {
-    /// Handles a search, at index `turn`, that found an element or node with the mark `mark` of some search.
-    /// If the mark belongs to another side, merges the search of that side into the search at `turn`. Returns
-    /// the new index of the merged search.
+    /// Handles the case that the running search with index `turn` has reached an element or node with the
+    /// mark `mark`. If the mark belongs to another search, merges that search into the search `turn`. Returns
+    /// the index of the merged search, which may have changed.
     fn meet(&mut self, turn: usize, mark: u32) -> usize {
         let own = self.joined.lowest(self.running[turn].place);
         let other = self.joined.lowest((mark - self.first) as usize);
@@ -327,8 +333,8 @@ impl Sides {
             (_, Some(place)) => Some(self.resting.swap_remove(place)),
             _ => None,
         };
-        // If the other side has no search any more, it is a detached piece, and this side belongs to that
-        // piece.
+        // A side without a running or resting search has become a detached piece. The side of this search
+        // belongs to that piece.
         let Some(met) = met else {
             return turn;
         };
@@ -339,7 +345,8 @@ impl Sides {
     }
 }
 
-/// Groups elements by connection through nodes that they share with each other.
+/// Sorts elements into sides. Two elements are on one side if they share a node, directly or through other
+/// elements of `around`.
 fn sides_of<D: Dim>(mesh: &Mesh<D>, around: &[ElementId]) -> Vec<Vec<ElementId>> {
     let mut nodes: Vec<(NodeId, usize)> = Vec::new();
     for (place, &id) in around.iter().enumerate() {
@@ -355,7 +362,8 @@ fn sides_of<D: Dim>(mesh: &Mesh<D>, around: &[ElementId]) -> Vec<Vec<ElementId>>
     joined.sort(around)
 }
 
-/// Returns the elements that share a node with an element, including that element; some occur more than once.
+/// Returns the ids of the elements that share a node with an element. The element itself is included; some
+/// ids occur several times.
 fn neighbours<D: Dim>(mesh: &Mesh<D>, id: ElementId) -> impl Iterator<Item = ElementId> + '_ {
     let element = mesh.element(id).expect("neighbours of a live element");
     element

@@ -1,4 +1,4 @@
-//! Batches of elements, and the evaluation of groups of batches in the three loops of the kernel.
+//! Batches of elements, and the evaluation of groups of batches in three loops: gradients, stresses, forces.
 
 use super::force_kernel::{
     BlockView, Moduli, PerLane, Scratch, Uniform, forces, gradient, plain_forces, plain_gradient,
@@ -12,34 +12,36 @@ use crate::soft_body::element_law::Law;
 use fearless_simd::Simd;
 use std::ops::Range;
 
-/// Number of batches that pass through the three loops of the kernel together. Their scratch memory of 28 KB
-/// fits into an L1 cache of 32 KB.
+/// Number of batches that pass together through the loops for gradients, stresses and forces. The scratch
+/// memory of these batches, 28 KB, fits into an L1 cache of 32 KB.
 pub const GROUP: usize = 8;
 
 pub const VACANT: u32 = u32::MAX;
 pub const ALL_LANES: u8 = u8::MAX;
 
-/// Batch of elements, with the indices of their nodes, forces and class data.
+/// Batch: up to eight elements, one in each SIMD lane, with the indices of their nodes, forces and class
+/// data.
 #[derive(Clone, Debug)]
 pub struct Batch {
     pub home: BatchKey,
     pub elements: [u32; LANES],
     /// Mask of the lanes without an element.
     pub vacant: u8,
-    /// Mask of the lanes that were inverted in the last evaluation.
+    /// Mask of the lanes whose element had negative volume in the last evaluation.
     pub inverted: u8,
     pub half_size: Eight,
-    /// Rotation of each lane: a quaternion in 3D, cosine and sine in 2D.
+    /// Rotation of the element in each lane: a quaternion in 3D, cosine and sine in 2D.
     pub rotation: [Eight; 4],
-    /// Plastic inverse of each lane; `None` if the material is elastic.
+    /// Plastic inverse of the element in each lane; `None` if the material is elastic.
     pub undone: Option<Box<PlasticInverseLanes>>,
     pub node_count: u32,
-    /// Index of the first node of the batch in the node list of all batches. The force on that node has the same
-    /// index among the forces.
+    /// Index of the first node of the batch in `ElementBatches::nodes`. The forces of the batch begin at D::N
+    /// times this index in `ElementBatches::forces`.
     pub first: u32,
-    /// Start of the class data in `Shared::numbers`, or in `Shared::pooled` for a pooled batch.
+    /// Start of the class data in `ElementBatches::numbers`, or in `ElementBatches::pooled` for a pooled
+    /// batch.
     pub element_class: u32,
-    /// Length of the class data.
+    /// Number of values in the class data.
     pub numbers: u32,
 }
 
@@ -47,7 +49,7 @@ pub struct Batch {
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BatchKey {
     pub kind: BatchKind,
-    /// Number of the material.
+    /// Number of the material, 1 to 255.
     pub material: u8,
     /// Whether the elements sleep; then their rotations and forces are not updated.
     pub asleep: bool,
@@ -56,11 +58,11 @@ pub struct BatchKey {
 /// Kind of a batch: which element classes it may contain.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BatchKind {
-    /// Whole cells with nodes only in their corners.
+    /// Elements that are whole cells with nodes only at their corners.
     Plain,
-    /// Elements of a single class.
+    /// Elements of the class with this index.
     Class(u32),
-    /// Elements of any class with this number of nodes.
+    /// Elements of any class, each with this number of nodes.
     Pool(u32),
 }
 
@@ -70,7 +72,7 @@ impl BatchKey {
     }
 }
 
-/// Data that all batches read.
+/// Read-only data that all batches use.
 #[derive(Copy, Clone)]
 pub struct Shared<'a> {
     pub law: Law,
@@ -81,8 +83,8 @@ pub struct Shared<'a> {
     pub nodes: &'a [u32],
 }
 
-/// Several batches, evaluated together, and the forces that they write; `first` is the index of the first node
-/// of the first batch.
+/// Several batches that are evaluated together, and the forces that they write. `first` is the index of the
+/// group's first node in `ElementBatches::nodes`.
 pub struct Group<'a> {
     pub blocks: &'a mut [Batch],
     pub forces: &'a mut [f32],
@@ -91,26 +93,27 @@ pub struct Group<'a> {
 }
 
 impl Batch {
-    /// Index after the last node.
+    /// Returns the index in `ElementBatches::nodes` after the last node of the batch.
     pub fn end(&self) -> usize {
         self.first as usize + self.node_count as usize * LANES
     }
 
-    /// Whether no element of the batch is awake.
+    /// Returns whether the batch needs no evaluation, because its elements sleep or because it has no
+    /// elements.
     #[inline(always)]
     pub fn is_idle(&self) -> bool {
         self.home.asleep || self.vacant == ALL_LANES
     }
 
     /// Returns the range of the batch's forces within the forces of its group. `first` is the index of the
-    /// group's first node.
+    /// group's first node in `ElementBatches::nodes`.
     #[inline(always)]
     fn forces<D: Dim>(&self, first: usize) -> Range<usize> {
         (self.first as usize - first) * D::N..(self.end() - first) * D::N
     }
 
-    /// Returns the class data in one of two slices: values that all lanes share, or values for each lane. The
-    /// other slice is empty.
+    /// Returns the class data of the batch: a slice with one value for all lanes, and a slice with a value
+    /// for each lane. At least one of these slices is empty; both are empty for plain elements.
     #[inline(always)]
     fn element_class<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
         let places = self.element_class as usize..(self.element_class + self.numbers) as usize;
@@ -122,7 +125,7 @@ impl Batch {
     }
 
     /// Returns the data of the batch for the kernel. `forces` holds the forces of the whole group; `first` is
-    /// the index of the group's first node.
+    /// the index of the group's first node in `ElementBatches::nodes`.
     #[inline(always)]
     fn view<'a, D: Dim>(
         &'a mut self,
@@ -142,7 +145,7 @@ impl Batch {
     }
 }
 
-/// Evaluates the awake batches of a group.
+/// Evaluates the forces of the awake batches of a group at the given node positions [m].
 #[inline(always)]
 pub fn evaluate_group<D: Dim, S: Simd>(
     simd: S,
@@ -209,7 +212,7 @@ pub fn evaluate_group<D: Dim, S: Simd>(
     }
 }
 
-/// Evaluates a group with the widest lanes of the machine.
+/// Evaluates the forces of a group with the widest SIMD lanes of the machine.
 pub fn evaluate_best<D: Dim>(group: Group, position: &[Row], scratch: &mut [Scratch; GROUP]) {
     on_widest_lanes!(simd => evaluate_group::<D, _>(simd, group, position, scratch));
 }

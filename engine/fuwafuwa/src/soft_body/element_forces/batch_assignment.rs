@@ -16,9 +16,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 impl<D: Dim> ElementBatches<D> {
-    /// Updates the batches after a remodelling: takes out the elements `removed`, and adds the elements
-    /// `seated`, or moves them if they are in a batch already. `asleep` tells which elements sleep. The cost
-    /// is proportional to the changes.
+    /// Updates the batches after a remodelling. Takes out the elements `removed`. Adds the elements `seated`,
+    /// or assigns them again if a batch already contains them. `asleep` returns whether an element sleeps.
+    /// The cost is proportional to the number of these elements.
     pub fn update(
         &mut self,
         mesh: &Mesh<D>,
@@ -39,9 +39,10 @@ impl<D: Dim> ElementBatches<D> {
         self.insert_pending(mesh, newcomers);
     }
 
-    /// Puts elements to sleep, or wakes them. A batch is evaluated as a whole. If all elements of a batch
-    /// change, they stay together. If only some change, the smaller group, at most half of the lanes, moves
-    /// to other batches.
+    /// Puts elements to sleep, or wakes them if `asleep` is false. A batch is evaluated as a whole, so its
+    /// elements must sleep or be awake together. A batch that is more than half full keeps its elements if
+    /// all of them change. Otherwise the elements that change move to other batches. So do the elements that
+    /// do not change, if they are at most half of the lanes.
     pub fn set_asleep(&mut self, mesh: &Mesh<D>, elements: &[ElementId], asleep: bool) {
         let mut changing: BTreeMap<u32, u8> = BTreeMap::new();
         for &id in elements {
@@ -68,7 +69,7 @@ impl<D: Dim> ElementBatches<D> {
         self.relocate(mesh, &movers);
     }
 
-    /// Puts a whole batch to sleep, or wakes it.
+    /// Sets whether all elements of a batch sleep.
     fn change_key(&mut self, index: u32, asleep: bool) {
         let block = &mut self.blocks[index as usize];
         let home = BatchKey {
@@ -82,8 +83,8 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Moves elements with their state to other batches. Each element is given with a flag that says whether
-    /// it sleeps from now on.
+    /// Moves elements with their state to other batches. The flag of each element says whether the element
+    /// sleeps from now on.
     fn relocate(&mut self, mesh: &Mesh<D>, movers: &[(ElementId, bool)]) {
         let state = |&(id, asleep): &(ElementId, bool)| {
             let element = mesh.element(id).expect("only live elements sleep or wake");
@@ -111,7 +112,7 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Collects the state of an element that is to be added to a batch.
+    /// Returns an element with its rotation and plastic inverse, ready to be added to a batch.
     fn newcomer<'a>(
         &self,
         id: ElementId,
@@ -129,7 +130,8 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Adds elements that are in no batch, and updates the indices of the forces on their nodes.
+    /// Adds elements that no batch contains, and updates for each of their nodes where the forces on the node
+    /// are stored.
     fn insert_pending(&mut self, mesh: &Mesh<D>, newcomers: Vec<PendingElement>) {
         let nodes = newcomers
             .iter()
@@ -161,15 +163,15 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Returns the range of `forces` that holds the force on a node. The element is given by its batch and
-    /// lane, and the node by its number within the element.
+    /// Returns the range of `forces` that holds the force of an element on one of its nodes. The element is
+    /// given by the index of its batch and its lane; `node` is the number of the node within the element.
     pub(super) fn force_range(&self, index: u32, lane: u8, node: usize) -> Range<usize> {
         let first = self.blocks[index as usize].first as usize;
         let place = (first + node * LANES + lane as usize) * D::N;
         place..place + D::N
     }
 
-    /// Index in `forces` of the force of an element on a node.
+    /// Returns the index in `forces` at which the force of an element on a node begins.
     pub(super) fn force_index(&self, id: ElementId, node: NodeId) -> u32 {
         let (block, lane) = self.assigned[id];
         let block = &self.blocks[block as usize];
@@ -203,8 +205,8 @@ impl<D: Dim> ElementBatches<D> {
     }
 
     /// Adds elements of one class and material that are all asleep or all awake. They first fill vacant lanes
-    /// in batches of the class. Then each group of eight elements gets a new batch of the class. The last
-    /// elements, fewer than eight, join pooled batches.
+    /// in batches of the class. Then each eight elements get a new batch of the class. The last elements,
+    /// fewer than eight, join pooled batches, except plain elements, which are never pooled.
     fn insert_class(&mut self, element_class: &ElementClass<D>, mut newcomers: &[PendingElement]) {
         let PendingElement {
             element,
@@ -245,7 +247,8 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Returns a batch without elements, for elements with `count` nodes.
+    /// Returns the index of a batch without elements, for elements with `count` nodes. Reuses such a batch or
+    /// creates one.
     fn empty_block(&mut self, home: BatchKey, count: u32) -> u32 {
         let kind = (count, home.is_pool());
         if let Some(index) = self.empty.get_mut(&kind).and_then(Vec::pop) {
@@ -280,13 +283,14 @@ impl<D: Dim> ElementBatches<D> {
         self.blocks.len() as u32 - 1
     }
 
-    /// Initial plastic inverses of a batch, if its material is plastic.
+    /// Returns plastic inverses without deformation for a new batch; `None` if the material is elastic.
     fn undone_in(&self, home: BatchKey) -> Option<Box<PlasticInverseLanes>> {
         let flow = self.flows.get(home.material as usize - 1);
         flow.copied().flatten().map(|_| PlasticInverseLanes::none())
     }
 
-    /// Returns the start of a class's data in `self.numbers`; appends the data if they are not there.
+    /// Returns the start in `self.numbers` of the data of an element class. Appends the data `numbers` if the
+    /// class has none there yet.
     fn stencil_of(&mut self, class: u32, numbers: &[f32]) -> u32 {
         let all = &mut self.numbers;
         *self.element_classes.entry(class).or_insert_with(|| {
@@ -303,8 +307,8 @@ impl<D: Dim> ElementBatches<D> {
         let lane = block.vacant.trailing_zeros() as usize;
         block.vacant &= !(1 << lane);
         let is_last = block.vacant == 0;
-        // Copies the data of the first element also into the vacant lanes of the batch, so that these lanes
-        // compute finite values.
+        // The first element of a batch is copied into all lanes. The vacant lanes, which are computed but not
+        // used, then have finite values.
         let lanes = if is_first { 0..LANES } else { lane..lane + 1 };
         let half_size = 0.5 * self.voxel_size * newcomer.element.cell.width() as f32;
         let first = block.first as usize;
@@ -326,8 +330,8 @@ impl<D: Dim> ElementBatches<D> {
                 }
             }
         }
-        // Clears the forces that the lane's previous element left, because fracture may read them before the
-        // next evaluation.
+        // Clears the forces that the previous element of this lane has left, because fracture may read them
+        // before the next evaluation.
         for place in 0..newcomer.element.nodes.len() {
             let force = (first + place * LANES + lane) * D::N;
             self.forces[force..][..D::N].fill(0.0);
@@ -358,7 +362,7 @@ struct PendingElement<'a> {
     undone: PlasticInverse,
 }
 
-/// Returns the data of a class in single precision, in the layout of the kernel.
+/// Returns the data of an element class in single precision, in the order that the kernel reads.
 fn numbers_of<D: Dim>(law: Law, element_class: &ElementClass<D>) -> Vec<f32> {
     let count = element_class.slots.len();
     let mut mean = [0.0; 3];

@@ -1,7 +1,9 @@
 //! Arithmetic of a batch, all lanes at once.
 //!
-//! With x relative to the first node, the data (b, r, w, V) of a class at unit size, and half size h, the
-//! formulas of [`crate::soft_body::element_law`] become
+//! The data of an element class at unit size are the gradient b, rest offset r and volume weight w of each
+//! node, and the volume V. Let x be the position of a node relative to the first node of its element, h half
+//! the width of the element, d the number of dimensions, P the stress, and k the stiffness of the hourglass
+//! modes. The formulas of [`crate::soft_body::element_law`] then become
 //!
 //! ```text
 //! F = Σ x bᵀ / (V h)     G = Σ x (w r)ᵀ     c = Σ w x / V     W = Σ w r rᵀ
@@ -10,11 +12,12 @@
 //! ```
 //!
 //! Small groups of batches pass through three short loops: gradient, stress and forces. A single long loop
-//! would need far more registers than exist, and its chain of square roots and divisions would stall the
-//! processor.
+//! would need far more registers than the processor has, and would wait for its chain of square roots and
+//! divisions.
 //!
-//! A plain cell has nodes only in its corners. There w = 1, and the entries of b and r are ±1, so the sums
-//! need only additions and subtractions. Four of five elements are plain.
+//! A plain element is a whole cell with nodes only in its corners. For a plain element, w = 1, and the
+//! entries of b and r are ±1, so the sums need only additions and subtractions. Four of five elements are
+//! plain.
 
 use super::rotation_extraction::{Matrix, turn};
 use crate::foundation::dim::Dim;
@@ -25,18 +28,18 @@ use fearless_simd::prelude::*;
 
 /// Data of one batch for the kernel.
 pub struct BlockView<'a> {
-    /// Node indices of the batch: that of node k in lane l is at k · LANES + l.
+    /// Node ids of the batch. The id of node k of the element in lane l is at k · LANES + l.
     pub nodes: &'a [u32],
     pub half_size: &'a Eight,
-    /// Rotation of each lane: a quaternion in 3D, cosine and sine in 2D.
+    /// Rotation of the element in each lane: a quaternion in 3D, cosine and sine in 2D.
     pub rotation: &'a mut [Eight; 4],
-    /// Forces on the nodes in `nodes`, in the same order, with D::N components each.
+    /// Forces [N] on the nodes in `nodes`, in the same order, with D::N components each.
     pub forces: &'a mut [f32],
-    /// Mask of the lanes with an inverted element.
+    /// Mask of the lanes whose element has negative volume.
     pub inverted: &'a mut u8,
 }
 
-/// Elastic moduli of a material in single precision.
+/// Elastic moduli of a material [Pa], in single precision.
 #[derive(Copy, Clone, Debug)]
 pub struct Moduli {
     pub twice_shear: f32,
@@ -56,9 +59,10 @@ impl Moduli {
     }
 }
 
-/// Data of an element class: b, w r and w for each node, then the upper half of W, then 1/V, then the
-/// stiffness of the hourglass modes or of [`Law::Endo2004`]. `get` reads the value at an index, for all
-/// lanes.
+/// Data of an element class at unit size, as a list of values. The list begins with the gradient b, the
+/// product w r of volume weight and rest offset, and w for each node. Then follow the upper triangle of W = Σ
+/// w r rᵀ, the inverse volume 1/V, and a stiffness: of the hourglass modes, or of the springs of
+/// [`Law::Endo2004`]. `get` returns the value at an index, for all lanes.
 pub trait Stencils {
     fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S>;
 }
@@ -83,25 +87,26 @@ impl Stencils for PerLane<'_> {
     }
 }
 
-/// Number of values per node in the data of a class.
+/// Number of values per node in the data of an element class.
 pub const fn numbers_a_node<D: Dim>() -> usize {
     2 * D::N + 1
 }
 
-/// Number of values in the data of a class.
+/// Number of values in the data of an element class with `nodes` nodes.
 pub const fn numbers<D: Dim>(nodes: usize) -> usize {
     numbers_a_node::<D>() * nodes + D::N * (D::N + 1) / 2 + 2
 }
 
-/// Intermediate results that one loop passes to the next.
+/// Intermediate results of one batch, which one loop of the kernel passes to the next.
 #[derive(Copy, Clone, Debug)]
 pub struct Scratch {
-    /// Positions of the nodes relative to the first one.
+    /// Positions of the nodes [m] relative to the first node of the element.
     x: [[Eight; 3]; 27],
     pub f: [[Eight; 3]; 3],
     moment: [[Eight; 3]; 3],
     centre: [Eight; 3],
-    /// Stress of each element. Under [`Law::Endo2004`], which has no stress, the rotation of the element.
+    /// First Piola–Kirchhoff stress [Pa]; under [`Law::Endo2004`], which has no stress, the rotation matrix
+    /// of the element.
     pub stress: [[Eight; 3]; 3],
 }
 
@@ -115,7 +120,8 @@ impl Scratch {
     };
 }
 
-/// First loop: F and c of plain cells, by sums and differences.
+/// First loop, for plain elements: computes the deformation gradient and the centroid from sums and
+/// differences of node positions.
 #[inline(always)]
 pub fn plain_gradient<D: Dim, S: Simd>(
     simd: S,
@@ -139,8 +145,9 @@ pub fn plain_gradient<D: Dim, S: Simd>(
         let (d0, s0) = (x[1][i], x[1][i]);
         let (d1, s1) = (x[3][i] - x[2][i], x[3][i] + x[2][i]);
         let f = &mut scratch.f[i];
-        // F from the differences, and c from the sums, of neighbouring corners: first in pairs along the
-        // first axis, then in pairs of pairs along the next axes.
+        // Columns of the deformation gradient are differences of the corners, and the centroid is their sum,
+        // with constant factors. Corners are combined in pairs along the first axis, then in pairs of pairs
+        // along the next axes.
         if D::N == 2 {
             (scale * (d0 + d1)).store_array(&mut f[0]);
             (scale * (s1 - s0)).store_array(&mut f[1]);
@@ -157,7 +164,8 @@ pub fn plain_gradient<D: Dim, S: Simd>(
     }
 }
 
-/// First loop: F, G and c of elements of any class.
+/// First loop, for any element class: computes the deformation gradient, the centroid, and the moment Σ x (w
+/// r)ᵀ of the hourglass term.
 #[inline(always)]
 pub fn gradient<D: Dim, S: Simd>(
     simd: S,
@@ -205,7 +213,7 @@ pub fn gradient<D: Dim, S: Simd>(
     }
 }
 
-/// Second loop: updates the rotation and computes the stress.
+/// Second loop: updates the rotation and computes the stress of each element.
 #[inline(always)]
 pub fn stress<D: Dim, S: Simd>(
     simd: S,
@@ -232,7 +240,7 @@ pub fn stress<D: Dim, S: Simd>(
     }
 }
 
-/// Third loop: forces of plain cells.
+/// Third loop, for plain elements: computes the nodal forces.
 #[inline(always)]
 pub fn plain_forces<D: Dim, S: Simd>(
     simd: S,
@@ -256,8 +264,8 @@ pub fn plain_forces<D: Dim, S: Simd>(
         for j in 0..D::N {
             m[j] = bend * load(simd, &scratch.f[i][j]) - area * load(simd, &scratch.stress[i][j]);
         }
-        // Force at each corner: ± m[0] ± m[1] ± m[2], with the signs of the corner's coordinates. Opposite
-        // corners share a sum.
+        // The force at a corner is ± m[0] ± m[1] ± m[2], with plus on the high side of an axis and minus on
+        // the low side. Opposite corners have opposite forces, so one sum serves both.
         if D::N == 2 {
             let (sum, difference) = (m[0] + m[1], m[0] - m[1]);
             force[0][i] -= sum;
@@ -282,7 +290,7 @@ pub fn plain_forces<D: Dim, S: Simd>(
     }
 }
 
-/// Third loop: forces of elements of any class.
+/// Third loop, for any element class: computes the nodal forces.
 #[inline(always)]
 pub fn forces<D: Dim, S: Simd>(
     simd: S,
@@ -319,8 +327,8 @@ pub fn forces<D: Dim, S: Simd>(
             }
         }
     } else {
-        // Factor h^(d−2), which converts Young's modulus to a stiffness per node: 1 in 2D, the half size h in
-        // 3D.
+        // Factor h^(d−2) from Young's modulus to a stiffness per node, with half width h in d dimensions: 1
+        // in 2D, h in 3D.
         let length = if D::N == 2 { splat(simd, 1.0) } else { half };
         stiffness = splat(simd, moduli.young) * own_stiffness * length;
         for i in 0..D::N {
@@ -348,7 +356,8 @@ pub fn forces<D: Dim, S: Simd>(
     }
 }
 
-/// Returns k and h^(d−1): the stiffness of the hourglass term, and the factor from stress to force.
+/// Returns two factors for elements of half width h: the stiffness k of the hourglass modes of a plain
+/// element, and h^(d−1), by which a stress is multiplied to get a nodal force.
 #[inline(always)]
 fn scales<D: Dim, S: Simd>(simd: S, moduli: &Moduli, half: Lanes<S>) -> (Lanes<S>, Lanes<S>) {
     let hourglass = splat(simd, moduli.hourglass);
@@ -359,8 +368,8 @@ fn scales<D: Dim, S: Simd>(simd: S, moduli: &Moduli, half: Lanes<S>) -> (Lanes<S
     }
 }
 
-/// Returns the first Piola–Kirchhoff stress [Pa] of the deformation f with rotation r; sets the mask of the
-/// lanes where f is inverted.
+/// Returns the first Piola–Kirchhoff stress [Pa] of the deformation gradient `f` with rotation `r`. Sets in
+/// `inverted` the mask of the lanes with negative volume.
 #[inline(always)]
 pub(super) fn stress_of<D: Dim, S: Simd>(
     simd: S,
@@ -379,7 +388,7 @@ pub(super) fn stress_of<D: Dim, S: Simd>(
     let twice_shear = splat(simd, moduli.twice_shear);
     let pressure = splat(simd, moduli.lame) * stretch - twice_shear;
     let mut cofactor = [[zero; 3]; 3];
-    // Cofactors in 2D: the entries of `f` itself, swapped and signed.
+    // In 2D, the cofactors are the entries of `f` themselves, swapped and with changed signs.
     if D::N == 2 {
         cofactor[0] = [f[1][1], zero - f[1][0], zero];
         cofactor[1] = [zero - f[0][1], f[0][0], zero];
@@ -407,7 +416,8 @@ pub(super) fn stress_of<D: Dim, S: Simd>(
     p
 }
 
-/// Index of the entry in row i and column j within the upper half of W.
+/// Returns the index of the entry in row i and column j of a symmetric matrix of which only the upper
+/// triangle is stored, row by row.
 #[inline(always)]
 pub fn symmetric<D: Dim>(i: usize, j: usize) -> usize {
     let (low, high) = if i < j { (i, j) } else { (j, i) };

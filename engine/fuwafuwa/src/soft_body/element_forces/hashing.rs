@@ -10,7 +10,7 @@ use crate::foundation::hash::{Hash, HashState};
 impl<D: Dim> HashState for ElementBatches<D> {
     fn hash_state(&self, hash: &mut Hash) {
         // Fields bound to `_` are not hashed. They follow from the mesh, the materials and the order of past
-        // changes, and do not affect the result of a simulation.
+        // changes, and do not affect later states of the simulation.
         let Self {
             law,
             blocks,

@@ -1,4 +1,5 @@
-//! Plastic elements, all lanes at once: [`crate::soft_body::plasticity`] in single precision.
+//! Plastic flow of a batch, all lanes at once: the formulas of [`crate::soft_body::plasticity`] in single
+//! precision.
 
 use super::force_kernel::{BlockView, Moduli, Scratch, stress_of};
 use super::rotation_extraction::{Matrix, turn};
@@ -9,16 +10,16 @@ use crate::soft_body::plasticity::{MAX_FLOW, MIN_FLOW_VOLUME_RATIO, Plasticity};
 use fearless_simd::prelude::*;
 use glam::Vec3;
 
-/// Plastic inverse G of each lane, by rows.
+/// Plastic inverse G of the element in each lane, by rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlasticInverseLanes(pub [[Eight; 3]; 3]);
 
-/// Plastic state of one element, by rows: the inverse G = Fₚ⁻¹ of its plastic deformation gradient.
+/// Rows of the plastic inverse G = Fₚ⁻¹ of one element; Fₚ is the plastic part of the deformation gradient.
 pub type PlasticInverse = [Vec3; 3];
 
 pub const IDENTITY: PlasticInverse = Vec3::AXES;
 
-/// Flow parameters of a material in single precision.
+/// Plastic flow limits of a material in single precision.
 #[derive(Copy, Clone, Debug)]
 pub struct PlasticFlowLimits {
     most_deviator: f32,
@@ -35,7 +36,7 @@ impl PlasticFlowLimits {
 }
 
 impl PlasticInverseLanes {
-    /// Returns the state without plastic deformation.
+    /// Returns plastic inverses without deformation: the identity in each lane.
     pub fn none() -> Box<Self> {
         Box::new(Self(
             IDENTITY.map(|row| row.to_array().map(|entry| [entry; LANES])),
@@ -56,8 +57,8 @@ impl PlasticInverseLanes {
 }
 
 /// Second loop for plastic elements: computes the stress like that of elastic elements, then applies plastic
-/// flow. Split into several functions outside the elastic kernel: as one function, it took minutes to compile
-/// with scalar lanes.
+/// flow. The loop is split into several functions that are not inlined, because a single function took
+/// minutes to compile with scalar lanes.
 #[inline(never)]
 pub fn plastic_stress<D: Dim, S: Simd>(
     simd: S,
@@ -178,16 +179,18 @@ fn flown<D: Dim, S: Simd>(
             eased[i][j] *= scale;
         }
     }
-    // Flow back towards the original shape raises the stiffness factor of the element, and may thereby raise its
-    // energy. Compares the stored energy before and after, so that flow that would increase it is rejected.
+    // Flow back towards the original shape raises the stiffness factor of an element, and may thereby raise
+    // its elastic energy. Flow that would raise the energy is rejected, so the energies before and after are
+    // compared.
     let whole = determinant::<D, S>(elastic);
     let before =
         kneaded_stiffness::<D, S>(simd, g) * density::<D, S>(simd, moduli, &stretch, whole);
     let after =
         kneaded_stiffness::<D, S>(simd, &next) * density::<D, S>(simd, moduli, &eased, whole);
-    // The element flows only if four quantities are positive: the room below the plastic limit, the energy
-    // loss, the excess over the minimum volume, and the excess strain. A comparison with NaN is false, so NaN
-    // prevents flow.
+    // An element flows only if four quantities are positive: the distance to the plastic limit, the decrease
+    // of the energy, the excess over the minimum volume ratio, and the excess over the yield strain. Beyond
+    // the plastic limit, the decrease of plastic strain takes the place of the distance. A comparison with
+    // NaN is false, so NaN prevents flow.
     let (now, then) = (squared::<D, S>(zero, g), squared::<D, S>(zero, &next));
     let room = splat(simd, flow.most_flown) - then;
     let room = if_positive(room, room, now - then);
@@ -203,7 +206,8 @@ fn flown<D: Dim, S: Simd>(
     kept
 }
 
-/// Elastic energy density [J/m³] of the symmetric stretch `stretch` in elements with volume ratio `volume`.
+/// Elastic energy density [J/m³] of elements with the symmetric stretch matrix `stretch` and the volume ratio
+/// `volume`.
 #[inline(always)]
 fn density<D: Dim, S: Simd>(
     simd: S,
@@ -223,8 +227,8 @@ fn density<D: Dim, S: Simd>(
         + splat(simd, moduli.young) * below * below)
 }
 
-/// Returns the stiffness factor 1 / λ_max(GᵀG) of elements with plastic inverse G, estimated from the trace
-/// and the norm of GᵀG.
+/// Returns the stiffness factor 1 / λ_max(GᵀG) of elements with plastic inverse G. The largest eigenvalue
+/// λ_max is estimated from the trace and the norm of GᵀG.
 #[inline(always)]
 fn kneaded_stiffness<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
     let zero = splat(simd, 0.0);
@@ -255,7 +259,8 @@ fn inverse_root<D: Dim, S: Simd>(simd: S, of: Lanes<S>) -> Lanes<S> {
     if D::N == 2 {
         return one / of.sqrt();
     }
-    // Inverse cube root by Newton's iteration from 1; three rounds are enough for numbers from 0.8 to 1.2.
+    // Newton's iteration for the inverse cube root, from 1. Three rounds are enough for numbers from 0.8 to
+    // 1.2.
     let (four, third) = (splat(simd, 4.0), splat(simd, 1.0 / 3.0));
     let mut root = one;
     for _ in 0..3 {
@@ -279,7 +284,7 @@ fn product<D: Dim, S: Simd>(zero: Lanes<S>, a: &Matrix<S>, b: &Matrix<S>) -> Mat
 
 #[inline(always)]
 fn determinant<D: Dim, S: Simd>(m: &Matrix<S>) -> Lanes<S> {
-    // In 2D the third axis is not deformed, so the 2 × 2 determinant is the whole one.
+    // In 2D the third axis is not deformed, so the determinant of the 2 × 2 part is that of the whole matrix.
     if D::N == 2 {
         return m[0][0] * m[1][1] - m[0][1] * m[1][0];
     }

@@ -1,5 +1,5 @@
 //! Snapshots of the batches. Only the state of each element is saved. The batches are rebuilt from the mesh,
-//! because the distribution over batches does not change the result.
+//! because the assignment of elements to batches does not change the result.
 
 use super::batch::VACANT;
 use super::plastic_kernel::{IDENTITY, PlasticInverse};
@@ -14,9 +14,9 @@ use glam::Vec3;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 impl<D: Dim> ElementBatches<D> {
-    /// Returns whether a state read from a file has the right number of entries for the elements of a mesh,
-    /// and valid plastic inverses. Rotations and forces may have any value: pieces that become non-finite are
-    /// quarantined after the tick.
+    /// Returns whether the state read from a file has the right number of entries for the elements of a mesh,
+    /// and valid plastic inverses. Rotations and forces may have any value, because pieces that become
+    /// non-finite are quarantined after the tick.
     pub fn is_sound(&self, mesh: &Mesh<D>) -> bool {
         let numbers = |(_, element): (_, &Element)| parts::<D>() + element.nodes.len() * D::N;
         let numbers: usize = mesh.elements().map(numbers).sum();
@@ -33,8 +33,8 @@ impl<D: Dim> ElementBatches<D> {
         self.saved.as_ref().is_some_and(fits)
     }
 
-    /// Puts the elements of a mesh, some of which are `asleep`, into batches, and restores the state read
-    /// from a file. The elasticities must be set afterwards.
+    /// Puts the elements of a mesh into batches, and restores their state from the snapshot. `asleep` returns
+    /// whether an element sleeps. The caller must then call [`ElementBatches::set_elasticities`].
     pub fn restore(
         &mut self,
         mesh: &Mesh<D>,
@@ -102,8 +102,8 @@ impl<D: Dim> ElementBatches<D> {
     }
 }
 
-/// Returns whether a plastic inverse is valid: it preserves volume, and leaves the third axis unchanged in
-/// 2D.
+/// Returns whether a plastic inverse is valid: it preserves volume within 10 %, has no entry of 100 or more,
+/// and leaves the third axis unchanged in 2D.
 fn is_sound<D: Dim>(dent: &PlasticInverse) -> bool {
     let [x, y, z] = *dent;
     let volume = x.dot(y.cross(z));

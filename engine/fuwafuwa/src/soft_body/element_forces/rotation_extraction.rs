@@ -1,4 +1,4 @@
-//! Rotation of a deformation, all lanes at once.
+//! Rotation part of deformation gradients, all lanes at once.
 
 use crate::foundation::dim::Dim;
 use crate::math::lanes::{Eight, Lanes, if_positive, load, splat};
@@ -6,7 +6,9 @@ use fearless_simd::prelude::*;
 
 pub type Matrix<S> = [[Lanes<S>; 3]; 3];
 
-/// Returns the rotation of a deformation; see [`crate::soft_body::element_law::rotation_of`]. Exact in 2D, iterative in 3D.
+/// Updates `rotation` to the rotation part of the deformation gradient `f`, and returns it as a matrix; see
+/// [`crate::soft_body::element_law::rotation_of`]. Exact in 2D. In 3D, two iterations from the previous
+/// rotation.
 #[inline(always)]
 pub fn turn<D: Dim, S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) -> Matrix<S> {
     if D::N == 2 {
@@ -16,7 +18,7 @@ pub fn turn<D: Dim, S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) 
     for part in 0..4 {
         q[part] = load(simd, &rotation[part]);
     }
-    // Performs two iterations, because one iteration lags behind a body that spins while it is squashed.
+    // Two iterations: a single one would lag behind a body that spins while it is squashed.
     q = turn_in_space(simd, f, turn_in_space(simd, f, q));
     for part in 0..4 {
         q[part].store_array(&mut rotation[part]);
@@ -24,8 +26,8 @@ pub fn turn<D: Dim, S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) 
     matrix_of(simd, q)
 }
 
-/// Returns the rotation of a 2D deformation F exactly: (cos, sin) ∝ (F₀₀ + F₁₁, F₁₀ − F₀₁). If both
-/// components vanish, keeps the previous rotation.
+/// Returns the rotation part of a 2D deformation gradient F exactly: (cos, sin) ∝ (F₀₀ + F₁₁, F₁₀ − F₀₁).
+/// Keeps the previous rotation if both components on the right are almost 0.
 #[inline(always)]
 fn turn_in_plane<S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) -> Matrix<S> {
     let zero = splat(simd, 0.0);
@@ -40,7 +42,8 @@ fn turn_in_plane<S: Simd>(simd: S, f: &Matrix<S>, rotation: &mut [Eight; 4]) -> 
     [[cosine, zero - sine, zero], [sine, cosine, zero], [zero; 3]]
 }
 
-/// Returns the 3D rotation after one iteration from `q` towards the rotation of the deformation `f`.
+/// Returns the rotation, as a quaternion, after one iteration from `q` towards the rotation part of the 3D
+/// deformation gradient `f`.
 #[inline(always)]
 fn turn_in_space<S: Simd>(simd: S, f: &Matrix<S>, q: [Lanes<S>; 4]) -> [Lanes<S>; 4] {
     let zero = splat(simd, 0.0);
@@ -55,7 +58,8 @@ fn turn_in_space<S: Simd>(simd: S, f: &Matrix<S>, q: [Lanes<S>; 4]) -> [Lanes<S>
         }
     }
     let t = (splat(simd, 3.0) * norm).sqrt() + splat(simd, 1e-6);
-    // Rounds values below 1e-12 to 0: at rest their products would be subnormal, and slow.
+    // Rounds values to multiples of about 1e-12, the resolution of `f32` near 1e-5. Otherwise elements at
+    // rest would compute with subnormal numbers, which are slow.
     let rounder = splat(simd, 1e-5);
     let settled = |value: Lanes<S>| (value + rounder) - rounder;
     let axial = [
@@ -92,7 +96,7 @@ fn turn_in_space<S: Simd>(simd: S, f: &Matrix<S>, q: [Lanes<S>; 4]) -> [Lanes<S>
     ]
 }
 
-/// Returns the matrix of a quaternion.
+/// Returns the rotation matrix of a unit quaternion (x, y, z, w).
 #[inline(always)]
 pub fn matrix_of<S: Simd>(simd: S, q: [Lanes<S>; 4]) -> Matrix<S> {
     let [x, y, z, w] = q;

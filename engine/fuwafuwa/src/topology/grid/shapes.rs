@@ -1,6 +1,6 @@
-//! Grids of named shapes: ball, cube, ring, heart, flower.
+//! Grids in the shape of a ball, cube, ring, heart or flower.
 //!
-//! One formula serves both the plane and space.
+//! The same formulas serve 2D and 3D: in 2D the third coordinate is 0.
 
 use super::VoxelGrid;
 use crate::error::Error;
@@ -10,16 +10,17 @@ use glam::Vec3;
 impl<D: Dim> VoxelGrid<D> {
     /// Creates the disc (2D) or ball (3D) that fills a grid of `n` voxels across `diameter` metres.
     ///
-    /// A voxel is solid if its centre lies within the radius minus half a voxel, so that the outermost layer
-    /// stays inside the box. With one or two voxels across, the ball fills the box.
+    /// A voxel is solid if its centre lies within half the diameter minus half a voxel, so that the outermost
+    /// layer stays inside the box of the grid. A ball of one or two voxels across fills the box.
     ///
     /// # Errors
     /// See [`VoxelGrid::from_fn`].
     #[inline(never)]
     pub fn ball(n: usize, diameter: f32) -> Result<Self, Error> {
         let centre = n as f32 * 0.5;
-        // The minimum of 0.9 voxels serves balls one or two voxels across. The voxels of a 2 × 2 × 2 grid are
-        // 0.87 from its centre, so all of them are solid. Larger balls have a radius of at least 1.
+        // Radius in voxels; at least 0.9 for balls of one or two voxels across. The voxel centres of a 2 × 2
+        // × 2 grid are 0.87 from its centre, so all eight voxels are solid. Larger balls have a radius of at
+        // least 1.
         let radius = (centre - 0.5).max(0.9);
         Self::from_fn(Self::cube_size(n), diameter / n as f32, |at| {
             let squared: f32 = at[..D::N]
@@ -40,14 +41,15 @@ impl<D: Dim> VoxelGrid<D> {
     }
 
     /// Creates the ring (2D) or torus (3D, in the plane of the first two axes) of `n` voxels across
-    /// `diameter` metres. The hole is half as wide.
+    /// `diameter` metres. The diameter of the hole is half that of the ring.
     ///
     /// # Errors
     /// See [`VoxelGrid::from_fn`]; with a small `n` no voxel is solid.
     #[inline(never)]
     pub fn ring(n: usize, diameter: f32) -> Result<Self, Error> {
         let size = [n, n, D::depth(n.div_ceil(4))];
-        // Outer radius in half voxels; it leaves half a voxel free on each side, like the radius of a ball.
+        // Outer radius in half voxels. It leaves half a voxel empty on each side of the box, like the radius
+        // of a ball.
         let outer = n as f32 - 1.0;
         let tube = 0.25 * outer;
         Self::from_fn(size, diameter / n as f32, |voxel| {
@@ -57,16 +59,17 @@ impl<D: Dim> VoxelGrid<D> {
         })
     }
 
-    /// Creates a heart of `n` voxels across `width` metres, its point down.
+    /// Creates a heart of `n` voxels across `width` metres, with the tip towards −y.
     ///
-    /// In space the heart is the sextic (x² + 9/4 z² + y² − 1)³ ≤ x²y³ + 9/80 z²y³ [Taubin 1994] with y up;
-    /// in the plane it is the section of that sextic at z = 0.
+    /// In 3D the heart is the sextic (x² + 9/4 z² + y² − 1)³ ≤ x²y³ + 9/80 z²y³ [Taubin 1994]; in 2D it is
+    /// the section of this sextic at z = 0.
     ///
     /// # Errors
     /// See [`VoxelGrid::from_fn`].
     #[inline(never)]
     pub fn heart(n: usize, width: f32) -> Result<Self, Error> {
-        // The curve spans −1.14 to 1.14 in x and −1 to 1.24 in y.
+        // Half the width of the grid, and the height of its middle, in the coordinates of the sextic. At z =
+        // 0, the heart spans −1.14 to 1.14 in x and −1 to 1.24 in y.
         const HALF_WIDTH: f32 = 1.2;
         const MIDDLE: f32 = 0.12;
         let size = Self::cube_size(n);
@@ -79,11 +82,11 @@ impl<D: Dim> VoxelGrid<D> {
         })
     }
 
-    /// Creates a flower of `n` voxels across `width` metres, with five petals, one of them up; in space a
-    /// cushion.
+    /// Creates a flower of `n` voxels across `width` metres, with five petals, one of them towards +y. In 3D
+    /// the flower is a cushion with this outline.
     ///
-    /// The radius is 0.7 + 0.3 cos 5φ of the half width, with φ measured from the y axis. Because r⁵ cos 5φ
-    /// is the real part of (y + ix)⁵, no angle is computed.
+    /// At the angle φ from the y axis, the radius r is 0.7 + 0.3 cos 5φ times half the width. Because r⁵ cos
+    /// 5φ is the real part of (y + ix)⁵, no angle is computed.
     ///
     /// # Errors
     /// See [`VoxelGrid::from_fn`].
@@ -104,8 +107,8 @@ impl<D: Dim> VoxelGrid<D> {
         [n, n, D::depth(n)]
     }
 
-    /// Returns the centre of a voxel relative to the middle of a grid of `size`, in half voxels: whole
-    /// numbers.
+    /// Returns the offset of a voxel's centre from the middle of a grid of `size`, in half voxels, so that
+    /// the coordinates are whole numbers.
     fn from_middle(voxel: Point, size: [usize; 3]) -> Vec3 {
         [0, 1, 2]
             .map(|axis| (2 * voxel[axis] + 1 - size[axis] as i32) as f32)
@@ -118,7 +121,8 @@ mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
 
-    /// Draws a flat grid, or the middle layer of a 3D grid; the highest row first.
+    /// Returns a picture of a 2D grid or of the middle layer of a 3D grid, one string for each row, the row
+    /// with the highest y first.
     fn picture<D: Dim>(grid: Result<VoxelGrid<D>, Error>) -> Vec<String> {
         let grid = grid.unwrap();
         let [width, height, depth] = grid.size();
@@ -144,7 +148,7 @@ mod tests {
         assert_eq!(picture(VoxelGrid::<Dim3>::ring(9, 1.0)), ring);
         let torus = VoxelGrid::<Dim3>::ring(33, 1.0).unwrap();
         assert_eq!(torus.size(), [33, 33, 9]);
-        // The cross-section of the tube has the expected height: 5 of the 9 layers.
+        // The tube of the torus is 5 voxels high in a grid of 9 layers.
         let tube = (0..9).map(|z| torus.is_solid([1, 16, z]));
         assert_eq!(tube.filter(|&solid| solid).count(), 5);
         let heart = [
@@ -195,7 +199,7 @@ mod tests {
 
     #[test]
     fn ball_has_known_voxel_count() {
-        // Number of solid voxels at n = 32 in 3D.
+        // Number of solid voxels in a 3D ball 32 voxels across.
         assert_eq!(
             VoxelGrid::<Dim3>::ball(32, 1.0).unwrap().solid_count(),
             15_408

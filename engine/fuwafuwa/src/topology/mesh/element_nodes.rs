@@ -1,4 +1,5 @@
-//! Nodes of elements: an element gets the nodes, and so the class, that follow from its surroundings.
+//! Assignment of nodes to elements. The nodes of an element follow from the connectivity and the neighbouring
+//! elements; its class follows from its nodes.
 
 use super::remodel::Past;
 use super::{Element, InvariantViolation, Mesh, Node};
@@ -9,8 +10,9 @@ use crate::topology::connectivity::Connectivity;
 use crate::topology::element_class::{ElementClass, cell_corners, slot_at};
 
 impl<D: Dim> Mesh<D> {
-    /// Gives an element the nodes and the class that follow from its surroundings; returns false if nothing
-    /// changed. If `past` is given, a new node inherits its state from there.
+    /// Gives an element the nodes and the class that follow from the connectivity and the neighbouring
+    /// elements. Returns false if the nodes were the same before. If `past` is given, it receives for each
+    /// new node the old nodes from which the state of the new node is interpolated.
     pub(super) fn seat(
         &mut self,
         id: ElementId,
@@ -45,7 +47,7 @@ impl<D: Dim> Mesh<D> {
             count += 1;
         }
         let seated = &seated[..count];
-        // Equal nodes imply equal slots and so an equal class: nothing has changed.
+        // Equal nodes have equal slots, so the class is the same, too.
         if self.alive(id).nodes == seated {
             return Ok(false);
         }
@@ -70,19 +72,19 @@ impl<D: Dim> Mesh<D> {
         Ok(true)
     }
 
-    /// Returns whether an element other than `id` has `node` as a corner of its cell. The node must not be a
-    /// corner of the cell of `id` itself.
+    /// Returns whether some element other than `id` has a cell with a corner at `node`. The node must not be
+    /// a corner of the cell of `id`.
     fn is_node_beside(&self, id: ElementId, node: Node) -> bool {
-        // Only a cell up to level `highest` can have a corner at this point, because its corners are
-        // multiples of its width.
+        // Corners of a cell are multiples of its width, so only cells up to level `highest` can have a corner
+        // at this lattice point.
         let [x, y, z] = node.at;
         let highest = (x | y | z).trailing_zeros();
         self.owners_around(node.at, node.group)
             .any(|owner| owner != id && u32::from(self.alive(owner).cell.level) <= highest)
     }
 
-    /// Returns the id of a node at the lattice point with index `point`, and whether the node was created by
-    /// this call.
+    /// Returns the id of `node`, and whether this call has created the node. `point` is the index of the
+    /// node's lattice point.
     fn node_id(&mut self, node: Node, point: usize) -> (NodeId, bool) {
         let mut present = self.by_point.at(point);
         if let Some(id) = present.find(|&id| self.node(id).group == node.group) {
@@ -113,8 +115,8 @@ impl<D: Dim> Mesh<D> {
     }
 }
 
-/// Returns the lattice point of a slot, and an octant there that belongs to the element. `None` if the slot
-/// is not a corner of any child of the element.
+/// Returns the lattice point of a slot, and an octant around this point whose voxel the element contains.
+/// `None` if the slot is not a corner of any filled child.
 fn seat_of<D: Dim>(cell: Cell, children: u8, slot: usize) -> Option<(Point, usize)> {
     let steps = slot_at(slot);
     let touching = children & TOUCHING[slot];
@@ -129,10 +131,10 @@ fn seat_of<D: Dim>(cell: Cell, children: u8, slot: usize) -> Option<(Point, usiz
     Some((at, octant))
 }
 
-/// For each slot, mask of the children that have the slot as a corner.
+/// For each slot, mask of the children of a cell that have the slot as a corner.
 const TOUCHING: [u8; 27] = {
-    // Masks of the children for slot coordinates 0, 1 and 2 along each axis: near children, all children, far
-    // children.
+    // For each axis, masks of the children that touch the slot coordinates 0, 1 and 2: low children, all
+    // children, high children.
     let along = [
         [0b0101_0101, 0b1111_1111, 0b1010_1010],
         [0b0011_0011, 0b1111_1111, 0b1100_1100],

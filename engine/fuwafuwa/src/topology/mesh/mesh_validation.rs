@@ -17,9 +17,10 @@ use crate::topology::grid::VoxelGrid;
 use std::collections::BTreeMap;
 
 impl<D: Dim> Mesh<D> {
-    /// Checks the mesh: every solid voxel has one owner, neighbours differ by at most one level, no coarse
-    /// element has a node at a split point, every node counts its carriers correctly, and gradients balance
-    /// at inner nodes.
+    /// Checks the mesh. Each solid voxel belongs to exactly one element. The levels of neighbouring elements
+    /// differ by at most one. No element above level 0 has a node at a lattice point with several groups. The
+    /// number of elements that have each node is recorded correctly. The gradients of the elements add up to
+    /// 0 at inner nodes.
     ///
     /// # Errors
     /// The first [`InvariantViolation`] found.
@@ -36,7 +37,8 @@ impl<D: Dim> Mesh<D> {
         self.check_gradients(connectivity)
     }
 
-    /// Checks the owners, and returns the level that owns each voxel; `u8::MAX` for empty voxels.
+    /// Checks that each solid voxel belongs to exactly one element. Returns the level of this element, by the
+    /// index of the voxel; `u8::MAX` for empty voxels.
     fn check_ownership(&self, grid: &VoxelGrid<D>) -> Result<Vec<u8>, InvariantViolation> {
         let mut owners = vec![u8::MAX; grid.voxels().count()];
         for (id, element) in self.elements() {
@@ -72,8 +74,8 @@ impl<D: Dim> Mesh<D> {
         }
     }
 
-    /// Checks a mesh read from a file. Its lookup tables must be consistent. Except for the numbers of
-    /// elements and nodes, it must equal `fresh`, which was graded from scratch.
+    /// Checks a mesh read from a file. Its lookup tables must be consistent. Except for the ids of elements
+    /// and nodes, the mesh must equal `fresh`, which was built from scratch.
     ///
     /// # Errors
     /// The first [`InvariantViolation`] found.
@@ -157,8 +159,8 @@ impl<D: Dim> Mesh<D> {
         ensure(same, "owners")
     }
 
-    /// Returns the nodes of each element by its cell and children; `None` if a class is wrong or an element
-    /// occurs twice.
+    /// Returns the nodes of each element, by the cell and the children of the element. `None` if an element
+    /// has the wrong class or two elements have the same cell and children.
     #[cfg(feature = "serde")]
     fn by_shape(&self) -> Option<BTreeMap<(Cell, u8), Vec<Node>>> {
         let mut shapes = BTreeMap::new();
@@ -243,7 +245,7 @@ impl<D: Dim> Mesh<D> {
     }
 }
 
-/// Returns whether `ids`, in any order, are exactly the `expected` ones, which ascend.
+/// Returns whether `ids`, which may be in any order, are exactly the ids `expected`, which must ascend.
 #[cfg(feature = "serde")]
 fn are_just<I: Id + Ord>(ids: &[I], expected: impl Iterator<Item = I>) -> bool {
     let mut ids = ids.to_vec();

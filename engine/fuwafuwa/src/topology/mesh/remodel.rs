@@ -1,4 +1,4 @@
-//! Incremental update of the mesh while cracks grow, at a cost proportional to the changed elements.
+//! Update of the mesh after cracks, at a cost proportional to the number of changed elements.
 
 use super::{Element, InvariantViolation, Mesh, path};
 use crate::foundation::dim::{Dim, Point, add, corner, scale};
@@ -10,43 +10,45 @@ use crate::topology::element_class::{ElementClass, slot_index};
 use crate::topology::grid::VoxelGrid;
 use std::ops::Range;
 
-/// Changes made by one remodelling.
+/// Changes of a mesh in one remodelling.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Remodelled {
-    /// Removed elements.
+    /// Ids of the removed elements.
     pub removed: Vec<ElementId>,
-    /// Elements that are new or carry other nodes than before, ascending.
+    /// Ids of the elements that are new or whose nodes have changed, ascending.
     pub seated: Vec<ElementId>,
-    /// New nodes, and the sources of their state.
+    /// New nodes, each with the range in `shares` of the old nodes from which it inherits its state.
     pub inherited: Vec<Inheritance>,
-    /// Old nodes with their weights, for all entries of `inherited`; grouped by new node.
+    /// Ids of old nodes with interpolation weights, for all entries of `inherited` in turn.
     pub shares: Vec<(NodeId, f64)>,
-    /// Nodes that no element carries any more.
+    /// Ids of the nodes that were removed, because no element has them any more.
     pub abandoned: Vec<NodeId>,
-    /// Cell, children and id of the removed elements, sorted by cell.
+    /// Cell, children and id of each removed element, sorted by cell.
     gone: Vec<(Cell, u8, ElementId)>,
 }
 
-/// New node, and the old nodes from which it inherits its state, with weights that add up to 1.
+/// New node, and the old nodes from which its state is interpolated, with weights that add up to 1.
 ///
-/// The weights are those with which an element interpolates a slot without a node from its nodes. So position,
-/// velocity and linear momentum are transferred exactly, and the elements on both sides of a face give the new
-/// node the same state. The old ids are never new ids of the same remodelling.
+/// The weights are those of the old element for a point without a node. Therefore position, velocity and
+/// linear momentum are transferred exactly, and the elements on both sides of a face give the new node the
+/// same state. Ids of removed nodes are not used for new nodes in the same remodelling.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inheritance {
-    /// New node.
+    /// Id of the new node.
     pub node: NodeId,
-    /// Range in [`Remodelled::shares`] of the old nodes and weights for the new node.
+    /// Range in [`Remodelled::shares`] of the old nodes and their weights.
     pub from: Range<usize>,
 }
 
 impl Remodelled {
-    /// Returns the old nodes, with weights, from which a new node inherits its state.
+    /// Returns the ids of the old nodes from which the state of a new node is interpolated, with their
+    /// weights.
     pub fn from(&self, new: &Inheritance) -> &[(NodeId, f64)] {
         &self.shares[new.from.clone()]
     }
 
-    /// Returns the removed element that filled a voxel before.
+    /// Returns the removed element that contained a voxel before the remodelling; `None` if that element was
+    /// not removed.
     pub fn origin<D: Dim>(&self, voxel: Point) -> Option<ElementId> {
         path::<D>(voxel).find_map(|(cell, child)| {
             let first = self.gone.partition_point(|gone| gone.0 < cell);
@@ -58,10 +60,10 @@ impl Remodelled {
 }
 
 impl<D: Dim> Mesh<D> {
-    /// Updates the mesh after the groups at the `changed` points have changed and the cells `born` have been
-    /// created [Endo 2004, §3.2, Fig. 3]. Generates the elements of new cells, rebuilds those of their
-    /// parents from the remaining children, and splits, creates or drops nodes. The cost is proportional to
-    /// the affected elements.
+    /// Updates the mesh after the groups at the lattice points `changed` were split and the cells `born` were
+    /// created [Endo 2004, §3.2, Fig. 3]. Creates the elements of the new cells, rebuilds the elements of
+    /// their parents from the remaining children, and splits, creates or removes nodes. The cost is
+    /// proportional to the number of affected elements.
     ///
     /// # Errors
     /// An [`InvariantViolation`] if connectivity and cell hierarchy do not match; the mesh must then be
@@ -114,8 +116,8 @@ impl<D: Dim> Mesh<D> {
         })
     }
 
-    /// Removes elements, and the nodes that no other element carries; returns these nodes. The caller updates
-    /// grid, connectivity and cell hierarchy.
+    /// Removes elements, and the nodes that no other element has. Returns the ids of these nodes. The caller
+    /// must update grid, connectivity and cell hierarchy.
     pub(crate) fn take_out(
         &mut self,
         connectivity: &Connectivity<D>,
@@ -150,9 +152,8 @@ impl<D: Dim> Mesh<D> {
         gone
     }
 
-    /// Returns the elements that may need other nodes, ascending. These are the elements in `refitted` cells,
-    /// around the `changed` points, and around the corners of `born` cells. New nodes appear only at these
-    /// places.
+    /// Returns the elements whose nodes may change, ascending. These are the elements in `refitted` cells,
+    /// around the `changed` lattice points, and around the corners of `born` cells.
     fn elements_touched(
         &self,
         connectivity: &Connectivity<D>,
@@ -165,7 +166,7 @@ impl<D: Dim> Mesh<D> {
             (0..D::CORNERS).map(corner_of)
         };
         let corners = born.iter().flat_map(corners);
-        // Removes duplicate points, because neighbouring cells share corners.
+        // Lists each lattice point once, because neighbouring cells have common corners.
         let points = connectivity.each_once(changed.iter().copied().chain(corners));
         let around = |at| self.owners_around(at, D::ALL_CORNERS);
         let places = refitted.iter().filter_map(|&cell| self.places.index(cell));
@@ -174,7 +175,8 @@ impl<D: Dim> Mesh<D> {
         ascending(touched, self.elements.len())
     }
 
-    /// Rebuilds the elements of a cell so that they fill `filled` [Endo 2004, §3.2, phase 2 d].
+    /// Rebuilds the elements of a cell so that together they fill the children in the mask `filled` [Endo
+    /// 2004, §3.2, phase 2 d].
     fn refit(&mut self, cell: Cell, filled: u8, past: &mut Past, removed: &mut Vec<ElementId>) {
         let Some(place) = self.places.index(cell) else {
             return;
@@ -202,24 +204,26 @@ impl<D: Dim> Mesh<D> {
     }
 }
 
-/// State before a remodelling, and the state that new nodes inherit.
+/// Elements before a remodelling, as far as they have changed, and the new nodes that inherit state from
+/// them.
 #[derive(Default)]
 pub struct Past {
-    /// Removed elements, sorted by cell.
+    /// Removed elements. Sorted by cell before the first call of [`Past::inherit`].
     removed: Vec<Element>,
-    /// Old versions of elements with changed nodes, by ascending id; elements without nodes are new.
+    /// Elements whose nodes have changed, as they were before, by ascending id. An element without nodes was
+    /// created by the remodelling.
     pub replaced: Vec<(ElementId, Element)>,
-    /// New nodes, and the sources of their state.
+    /// New nodes, each with the range in `shares` of the old nodes from which it inherits its state.
     pub inherited: Vec<Inheritance>,
-    /// Old nodes with their weights, for all entries of `inherited`; grouped by new node.
+    /// Ids of old nodes with interpolation weights, for all entries of `inherited` in turn.
     shares: Vec<(NodeId, f64)>,
 }
 
 impl Past {
-    /// Adds a new node at `at` next to `voxel`, and computes the old nodes and weights from which the new
-    /// node inherits its state. The source is the child that contains the voxel, in the element that owned
-    /// the voxel before. The slots at the corners of this child are interpolated linearly to `at`. A slot
-    /// without a node is itself interpolated from adjacent slots.
+    /// Adds a new node at the lattice point `at`, a corner of `voxel`. Computes the old nodes and weights
+    /// from which the state of the new node is interpolated. These belong to the element that contained the
+    /// voxel before the remodelling. The corners of the child that contained the voxel are interpolated
+    /// linearly to `at`. A corner slot without a node is itself interpolated from adjacent slots.
     pub fn inherit<D: Dim>(
         &mut self,
         mesh: &Mesh<D>,
@@ -261,7 +265,8 @@ impl Past {
         Ok(())
     }
 
-    /// Returns the element that owned a voxel before the remodelling, and the child that contains the voxel.
+    /// Returns the element that contained a voxel before the remodelling, and the index of the child that
+    /// contained the voxel.
     fn owner<'a, D: Dim>(
         &'a self,
         mesh: &'a Mesh<D>,
@@ -282,7 +287,7 @@ impl Past {
         })
     }
 
-    /// Returns an element as it was before the remodelling, if it existed.
+    /// Returns an element as it was before the remodelling; `None` if the remodelling created the element.
     fn was<'a, D: Dim>(&'a self, mesh: &'a Mesh<D>, id: ElementId) -> Option<&'a Element> {
         let place = self.replaced.binary_search_by_key(&id, |&(id, _)| id);
         let element = match place {
@@ -292,7 +297,7 @@ impl Past {
         (!element.nodes.is_empty()).then_some(element)
     }
 
-    /// Returns the old nodes that no element carries any more, ascending.
+    /// Returns the ids of the old nodes that no element has any more, ascending.
     fn abandoned(&self, carriers: &IndexVec<NodeId, u8>) -> Vec<NodeId> {
         let replaced = self.replaced.iter().map(|(_, element)| element);
         let old = self.removed.iter().chain(replaced);
@@ -301,8 +306,8 @@ impl Past {
     }
 }
 
-/// Adds `weight` to the node of a slot. If the slot has no node, distributes the weight to adjacent slots,
-/// recursively. The shares of the current new node start at index `first`.
+/// Adds `weight` to the node on a slot. If the slot has no node, distributes the weight in equal parts to
+/// adjacent slots, recursively. The entries of the current new node begin at index `first` of the list.
 fn collect_shares<D: Dim>(
     element_class: &ElementClass<D>,
     nodes: &[NodeId],
