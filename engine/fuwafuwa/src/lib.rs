@@ -31,8 +31,8 @@
 //! - `parallel`: steps large bodies on several threads, with bitwise identical results
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-// In comments, units and sources stand in brackets, for example [m] and [Endo 2004, §3.1]. The two lints
-// below would report these brackets as broken links, and comments of public items that link to private items.
+// In comments, units and sources stand in brackets, for example [m] and [Endo 2004, §3.1]. Rustdoc takes such
+// brackets for links, so its checks of links are off.
 #![allow(rustdoc::private_intra_doc_links)]
 #![allow(rustdoc::broken_intra_doc_links)]
 // Loops over axes use one index for several vectors; zipped iterators would hide the formulas.

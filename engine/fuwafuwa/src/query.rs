@@ -483,7 +483,7 @@ fn each_once(mut found: Vec<QueryOverlap>) -> Vec<QueryOverlap> {
     found
 }
 
-/// Returns 0 if the condition holds, otherwise infinity. As the cost of a box in [`Query::search`], 0 visits
+/// Returns 0 if the condition holds, otherwise infinity. As the cost of a box in `Query::search`, 0 visits
 /// the box and infinity skips it.
 fn zero_if(condition: bool) -> f32 {
     if condition { 0.0 } else { f32::INFINITY }

@@ -96,8 +96,8 @@ impl Default for MotionType {
     }
 }
 
-/// Rigid body to add with [`World::add_rigid_body`](crate::World::add_rigid_body). Soft bodies collide with their
-/// nodes only, so a rigid body thinner than three voxels of a soft body may slip between the nodes.
+/// Rigid body to add with [`World::add_rigid_body`](crate::World::add_rigid_body). Of a soft body, only the nodes
+/// collide with rigid bodies. A rigid body thinner than three voxels may slip between the nodes.
 ///
 /// ```
 /// use fuwafuwa::{Dim3, RigidBody, Rotation, Shape, Vec3, World, WorldConfig};

@@ -38,9 +38,9 @@ pub struct Tree {
 #[derive(Clone, Debug)]
 struct TreeNode {
     bounds: Bounds,
-    /// Range of [`Tree::items`] that a leaf holds; empty for an inner node.
+    /// Range of `Tree::items` that a leaf holds; empty for an inner node.
     leaf: Range<u32>,
-    /// Indices of both children in [`Tree::nodes`]; unused in a leaf.
+    /// Indices of both children in `Tree::nodes`; unused in a leaf.
     children: [u32; 2],
 }
 

@@ -6,7 +6,7 @@ use glam::Vec3;
 /// resolves only 6 cm.
 pub const FARTHEST: f32 = 1e6;
 
-/// Returns whether a position is finite and within [`FARTHEST`], as required for rigid bodies and targets.
+/// Returns whether a position is finite and within `FARTHEST`, as required for rigid bodies and targets.
 pub fn is_within_reach(at: Vec3) -> bool {
     at.abs().max_element() <= FARTHEST && at.is_finite()
 }
