@@ -37,9 +37,9 @@ pub use removal::{PieceSize, Removed};
 #[cfg(feature = "serde")]
 pub(crate) use stored_world::StoredWorld;
 
-/// Decay rate [1/s] of the angular velocity of a one-voxel piece that touches something. In contacts such a
-/// piece is a ball, but it should look like a cube, which does not roll. At this rate, the rotation falls to
-/// an eighth in 0.1 s. A higher rate would stop the rotation in the air between two bounces.
+/// Decay rate [1/s] of the angular velocity of a one-voxel piece that touches something. Other pieces touch
+/// it as a ball, but it should move like a cube, which does not roll. At this rate, the rotation falls to an
+/// eighth in 0.1 s. A higher rate would stop the rotation in the air between two bounces.
 const CRUMB_SPIN_LOSS: f32 = 20.0;
 /// Extra drag [1/s] of pieces that touch something and move slower than `SETTLING_SPEED`. Without this drag,
 /// heaps creep for a long time before they fall asleep.
@@ -396,8 +396,8 @@ fn is_due(substep: u32, substeps: u32, rounds: u32) -> bool {
     substep * rounds % substeps < rounds
 }
 
-/// Returns the damping rates of a piece [1/s]. `rate` is the damping rate of its material's vibration, and
-/// `drag` the air drag.
+/// Returns the damping rates of a piece [1/s]. `rate` is the rate of its internal vibration, `drag` the air
+/// drag.
 fn slowing(
     motion: &PieceMotion,
     touches: bool,

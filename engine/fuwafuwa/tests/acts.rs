@@ -87,8 +87,8 @@ fn rotated_body_stays_at_rest() {
     }
 }
 
-/// Checks that a tearing body continues to move after `rotate_about` as it would have unrotated, in the
-/// rotated direction.
+/// Checks that `rotate_about` rotates the motion of a tearing body: after further ticks, the rotated body has
+/// the rotated momentum and the kinetic energy of the original.
 fn check_turned_in_motion<D: Dim>() {
     let rotation = Rotation::in_plane(PI);
     let (mut world, id) = with(weightless(), ball::<D>(16));

@@ -117,7 +117,7 @@ fn force_in_slab<D: Dim>(
     let mut world = weightless::<D>();
     let body = block(&mut world, size, voxel, Material::default());
     let top = size[1] as f32 * voxel;
-    // At 0.13 voxel widths beside a lattice plane, the knife cuts through voxels instead of between them.
+    // The knife moves in parallel to the lattice planes of the voxels, 0.13 voxel widths beside one of them.
     let (holder, id) = knife(
         &mut world,
         vector(0.13 * voxel, top + 0.01, 0.0),

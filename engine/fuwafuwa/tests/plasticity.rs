@@ -32,8 +32,8 @@ fn weightless<D: Dim>() -> WorldConfig<D> {
 }
 
 /// Presses a block between two plates to the fraction `share` of its height, and lifts the upper plate.
-/// Returns the width, height and volume of the block afterwards, the world and the body; the block had width,
-/// height and volume 1.
+/// Returns the height, width and volume of the block afterwards, relative to the initial ones, with the world
+/// and the body.
 fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftBodyHandle) {
     let mut world = World::<D>::new(weightless()).unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::cube(8, 1.0).unwrap(), &[material]).unwrap();

@@ -221,7 +221,7 @@ fn check_overlaps<D: Blades>() {
     assert_eq!(count(&world, probe(0.0, 2.9)), [2, 1], "as far as the bar");
     let needle = Shape::capsule(vector(-3.0, 0.013, 0.0), vector(2.0, 0.013, 0.0), 0.001);
     assert_eq!(count(&world, needle), [0, 1], "through it");
-    // After a cut in two, the point queries must list two pieces of the body.
+    // After a cut in two, the overlap query must list two pieces of the body.
     let blade = D::blade(Vec3::new(0.0, -1.0, -1.0), Vec3::Y * 2.0, Vec3::Z * 2.0);
     world.cut(body, &blade).unwrap();
     assert_eq!(count(&world, probe(0.0, 0.3)), [0, 2], "across the cut");

@@ -102,8 +102,9 @@ impl<D: Dim> World<D> {
     }
 
     /// Removes everything that is outside `region`: pieces without a node in the region, as
-    /// [`World::remove_piece`] does, and dynamic rigid bodies that do not overlap the region. Fixed, kinematic and coupled rigid bodies stay.
-    /// To remove objects that fall for ever, use the half-space above a plane that is below the lowest floor:
+    /// [`World::remove_piece`] does, and dynamic rigid bodies that do not overlap the region. Fixed,
+    /// kinematic and coupled rigid bodies stay. To remove objects that fall for ever, use the half-space
+    /// above a plane that is below the lowest floor:
     ///
     /// ```
     /// use fuwafuwa::{Dim3, RigidBody, Shape, Vec3, World, WorldConfig};
