@@ -34,8 +34,8 @@ fn picture_of(body: &SoftBody<Dim2>) -> Vec<String> {
         .collect()
 }
 
-/// Grades the voxels, cuts along the segments in order, and compares both meshes with the expected text
-/// pictures.
+/// Grades the voxels, cuts along the segments in order, and compares the graded and the remodelled mesh with
+/// the expected text pictures.
 fn check(voxels: &[&str], graded: &[&str], cuts: &[([f32; 2], [f32; 2])], remodelled: &[&str]) {
     let mut body = body_of(voxels);
     let found = picture_of(&body);

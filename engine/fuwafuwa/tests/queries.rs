@@ -258,8 +258,7 @@ fn check_filters<D: Blades>() {
     let ray = Ray::new(vector(-5.0, 0.1, 0.0), D::Vector::X);
     let hit = |world: &World<D>, filter: QueryFilter<'_>| {
         let hit = world.ray_cast(ray, 100.0, filter.clone());
-        // If the ray hits an object through the filter, the other queries must find the same object with that
-        // filter.
+        // If the ray hits an object, all other queries with this filter must find the same object.
         if let Some(hit) = hit {
             let behind = vector(hit.point[0] + 0.1, 0.1, 0.0);
             let probe = Shape::ball(0.05).translated(behind);
@@ -286,7 +285,7 @@ fn check_filters<D: Blades>() {
     let both = all.clone().excluding(first).excluding(second);
     assert_eq!(hit(&world, both.clone()), Some(piece(PieceId(0))));
     assert_eq!(hit(&world, both.excluding(cube)), None);
-    // The layers of query and object must match in both directions.
+    // A query finds an object only if each of them collides with a layer of the other.
     let only_second = Layers {
         memberships: 0b01,
         filters: 0b10,

@@ -264,8 +264,8 @@ fn check_leaning<D: Blades>() {
         let mut bodies = world.soft_bodies();
         bodies.all(|(_, body)| body.pieces().list.iter().all(|piece| piece.asleep))
     };
-    // The halves may take long to settle against each other. The test therefore puts all cubes to sleep by a
-    // method call.
+    // The halves may take long to settle against each other, so the test puts all bodies to sleep by a method
+    // call.
     (0..40).for_each(|_| _ = world.step());
     for id in [below, on_left, on_right, far] {
         world.put_to_sleep(id).unwrap();

@@ -1,4 +1,4 @@
-//! Snapshots: a loaded world continues with the same bits.
+//! Snapshots: a loaded world continues bit-identically to the saved world.
 #![cfg(feature = "serde")]
 
 use fuwafuwa::inspect::Hash;
@@ -134,7 +134,8 @@ fn loaded_world_continues_with_same_bits_with_joints_and_sensors() {
     check_tied_resumes::<Dim3>();
 }
 
-/// Checks that a loaded world continues with the same bits while a knife cuts through a falling ball.
+/// Checks that a world that is saved and loaded while a knife cuts through a falling ball continues
+/// bit-identically.
 fn check_cut_resumes<D: Dim>() {
     let mut world = torn_world::<D>(14);
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
@@ -174,8 +175,8 @@ fn loaded_world_continues_with_same_bits_during_cut() {
     check_cut_resumes::<Dim3>();
 }
 
-/// Checks that a loaded world continues with the same bits. A hand moves through crumbs, of which some sleep,
-/// and another body is cut.
+/// Checks that a saved and loaded world continues bit-identically while a hand moves through crumbs, some of
+/// them asleep, and another body is cut.
 fn check_crumbs_resume<D: Blades>(n: usize) {
     let mut world = torn_world::<D>(2 * n);
     let ball = world.nth_soft_body(0).unwrap();

@@ -134,7 +134,7 @@ impl RigidState {
         self.asleep = true;
     }
 
-    /// Rotates the linear and the angular velocity.
+    /// Rotates the vectors of the linear and the angular velocity; the pose stays.
     pub(crate) fn rotate_velocity(&mut self, rotation: Rotation) {
         self.velocity = rotation.apply(self.velocity);
         self.angular_velocity = rotation.apply(self.angular_velocity);

@@ -135,7 +135,7 @@ impl<D: Dim> World<D> {
         Ok(contacts.filter(move |contact| {
             let pair = contact.pair;
             pair.iter().any(|&object| selector.contains(object))
-                // Contacts with objects that were removed since the last tick are left out.
+                // Skips contacts with objects that were removed since the last tick.
                 && pair.iter().all(|&object| self.exists(object))
         }))
     }
