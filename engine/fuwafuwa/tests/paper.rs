@@ -38,7 +38,7 @@ fn element_count_grows_with_surface() {
     );
 }
 
-/// Elements stay small relative to a body of any size, because their mass is concentrated in their nodes.
+/// Elements are at most an eighth of the body wide: wider ones would concentrate too much mass in single nodes.
 #[test]
 fn element_width_is_at_most_an_eighth_of_body() {
     for n in [32, 64, 100, 256] {
