@@ -1,4 +1,5 @@
-//! A knife cuts through an organ, an ellipsoid of 64 voxels across on a table. Prints the time per tick.
+//! A knife cuts through an organ, an ellipsoid 64 voxels long that lies on a table. Prints the computing time
+//! per tick.
 //!
 //! ```text
 //! cargo run --release -p fuwafuwa --example knife -- [VOXELS [SUBSTEPS]]
@@ -31,8 +32,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut numbers = std::env::args().skip(1);
     let voxels: usize = numbers.next().map_or(Ok(64), |word| word.parse())?;
     let max_substeps: u32 = numbers.next().map_or(Ok(8), |word| word.parse())?;
-    // The simulation is deterministic, so runs differ only by the noise of the machine. The minimum of three
-    // runs is taken as the cost of a tick.
+    // The simulation is deterministic, so the times of runs differ only by disturbances of the machine. For
+    // each tick, the minimum over three runs is taken.
     let (mut times, told) = cut(voxels, max_substeps)?;
     for _ in 1..3 {
         let again = cut(voxels, max_substeps)?.0;
@@ -51,10 +52,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns the time of each tick [ms], and a summary of the cut.
+/// Returns the computing time of each tick [ms], and a summary of the cut.
 fn cut(voxels: usize, max_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn Error>> {
     let settings = WorldConfig {
-        // A tenth of normal gravity: buoyancy carries most of the organ's weight, as in a bath.
+        // 1 m/s², a tenth of normal gravity, as if the organ floated in a bath.
         gravity: Vec3::NEG_Y,
         max_substeps,
         ..WorldConfig::default()
@@ -62,7 +63,7 @@ fn cut(voxels: usize, max_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn E
     let mut world = World::<Dim3>::new(settings)?;
     let table = Shape::half_space(Vec3::Y, Vec3::ZERO);
     world.add_rigid_body(RigidBody::fixed(table).with_friction(0.8))?;
-    // The organ is 0.16 m wide and 0.1 m high.
+    // Voxel width [m] of an organ that is 0.16 m long.
     let size = 0.16 / voxels as f32;
     let grid = VoxelGrid::from_centres([voxels; 3], size, |at| {
         let scale = Vec3::new(1.0 / 0.08, 1.0 / 0.05, 1.0 / 0.06);
@@ -77,7 +78,7 @@ fn cut(voxels: usize, max_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn E
     let knife = world.add_knife(Knife::new(holder, edge, Vec3::NEG_Y))?;
     let (mut times, mut sums, mut most) = (Vec::new(), [0.0; 2], 0.0f32);
     for tick in 0..180 {
-        // The knife waits for half a second and then moves down for a bit over two seconds.
+        // The knife waits for 0.5 s and then moves down by 0.135 m in 2.25 s.
         let deep = 0.001 * (tick as f32 - 30.0).clamp(0.0, 135.0);
         world.set_target_position(holder, Vec3::new(0.081, 0.14 - deep, 0.08))?;
         let began = ThreadTime::now();

@@ -1,4 +1,5 @@
-//! Pushes a hand through a soft disc against a wall, and prints releases, energy and pieces.
+//! Pushes a hand through a soft disc against a wall, and prints split nodes, released energy and detached
+//! pieces.
 //!
 //! `cargo run --release -p fuwafuwa --example tear`
 
@@ -19,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         VoxelGrid::ball(64, 1.0)?,
         &[Material::default()],
     )?);
-    // Coupling stronger than the default, with which the hand gets stuck halfway through the disc.
+    // Stiffer coupling than the default. With the default, the hand would get stuck halfway through the disc.
     let strong = MotionType::Coupled {
         mass: 2.0,
         stiffness: 10_000.0,

@@ -3,64 +3,67 @@
 use std::borrow::Cow;
 use std::fmt;
 
-/// Error of an operation on a grid, a body, a world or a snapshot. An operation that returns an error changed nothing.
+/// Error of an operation on a voxel grid, a body, a world or a snapshot. An operation that fails leaves all
+/// state unchanged.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// The handle is stale: the object was removed, or was never in this world. A handle from another world is not always
-    /// detected, because the same slot and generation may be in use in both.
+    /// The handle is stale: the object was removed, or was never in this world. A handle from another world
+    /// is not always detected, because this world may hold a different object with the same arena index and
+    /// generation.
     InvalidHandle {
         /// Kind of the object, such as "soft body" or "joint".
         kind: &'static str,
-        /// Slot of the handle.
+        /// Index in the handle: position of the object in the arena that stores all objects of its kind.
         slot: u32,
     },
     /// A parameter is out of range.
     InvalidParameter {
-        /// Name of the field or argument. If it belongs to one of several objects, the object is named first, as in
-        /// "material 2: density".
+        /// Name of the field or argument. If several objects in the call have a field of this name, the
+        /// object precedes it, as in "material 2: density".
         field: Cow<'static, str>,
-        /// Expected value or range.
+        /// Description of the allowed values, for example "0 to 1".
         expected: Cow<'static, str>,
-        /// Given value.
+        /// Rejected value, formatted as text.
         given: String,
     },
     /// No voxel of the grid is solid.
     EmptyGrid,
-    /// The grid uses a material that was not given.
+    /// A voxel has a material number beyond the end of the given list of materials.
     MissingMaterial {
-        /// Number of the material in the grid, from 1.
+        /// Material number of the voxel, counted from 1.
         number: u8,
-        /// Number of materials given.
+        /// Length of the given list of materials.
         given: usize,
     },
-    /// The bytes are not a snapshot, or end within its header.
+    /// The bytes are not a snapshot, or they end before its header is complete.
     NotASnapshot,
-    /// The snapshot has another format version.
+    /// The format version of the snapshot is not the version that this engine reads.
     SnapshotVersion {
         /// Version that this engine reads.
         expected: u32,
-        /// Version in the header.
+        /// Format version in the header of the snapshot.
         found: u32,
     },
-    /// The snapshot is of a world with another number of dimensions.
+    /// The snapshot contains a 2D world, but a 3D world was requested, or the reverse.
     SnapshotDimensions {
         /// Number of dimensions of the requested world.
         expected: u8,
-        /// Number of dimensions in the header.
+        /// Number of dimensions in the header of the snapshot.
         found: u8,
     },
     /// The snapshot is truncated, damaged or modified: its checksum does not match.
     DamagedSnapshot,
-    /// The checksum of the snapshot matches, but its world is invalid.
+    /// The snapshot is undamaged, but its contents are inconsistent or out of range.
     InvalidSnapshot {
-        /// Violated condition.
+        /// Description of the fault, for example "a joint in it is invalid".
         reason: String,
     },
 }
 
 impl Error {
-    /// Returns the error of a parameter that is out of range.
+    /// Builds [`Error::InvalidParameter`] from the name of the field, the allowed values and the rejected
+    /// value.
     pub(crate) fn parameter(
         field: &'static str,
         expected: impl Into<Cow<'static, str>>,
@@ -73,7 +76,8 @@ impl Error {
         }
     }
 
-    /// Puts `owner`, such as "material 2", before the name of the parameter in an error.
+    /// Puts `owner`, for example "material 2", before the field name of an [`Error::InvalidParameter`]. Other
+    /// errors stay unchanged.
     pub(crate) fn of(self, owner: impl fmt::Display) -> Self {
         match self {
             Self::InvalidParameter {
@@ -128,7 +132,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Returns an error unless a parameter is valid.
+/// Returns [`Error::InvalidParameter`] unless `is_valid` is true.
 #[inline]
 pub(crate) fn require(
     is_valid: bool,

@@ -6,26 +6,28 @@ use crate::foundation::hash::hash_state;
 use crate::foundation::ids::PieceId;
 use crate::object_ref::{ObjectRef, ObjectSelector};
 
-/// Event of the last tick, for sounds, scores and effects.
+/// Event of the last tick, from which a program can trigger sounds, scores and visual effects.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub enum Event<D: Dim> {
-    /// A node was split: a crack advanced, or a cut passed here.
+    /// A node was split in two, because a crack advanced through it or [`World::cut`](crate::World::cut)
+    /// separated the voxels around it.
     NodeSplit {
-        /// Body of the split node.
+        /// Body to which the split node belongs.
         body: SoftBodyHandle,
-        /// Position of the node [m].
+        /// Position of the split node [m].
         point: D::Vector,
-        /// Elastic energy released [J]; 0 for an intentional cut.
+        /// Elastic energy that the advancing crack released at the node [J]; 0 for
+        /// [`World::cut`](crate::World::cut).
         energy: f32,
     },
     /// A piece was detached from its body.
     PieceDetached {
         /// Body from which the piece was detached.
         body: SoftBodyHandle,
-        /// Number of the new piece.
+        /// Number of the new piece within the body.
         piece: PieceId,
     },
     /// Two objects pressed on each other during the tick. Sent once per pair and tick, as long as contact
@@ -35,7 +37,8 @@ pub enum Event<D: Dim> {
     /// Two objects began to touch. The tick also has an [`Event::ContactForce`] with the same contact. Not
     /// sent for a piece that folds onto itself.
     ContactStarted(Contact<D>),
-    /// Two objects stopped touching, or one of them was removed. Objects at rest side by side still touch.
+    /// Two objects stopped touching, or one of them was removed. Objects at rest in contact keep touching,
+    /// even while they sleep.
     ContactEnded {
         /// The objects, in the order of [`Contact::pair`].
         pair: [ObjectRef; 2],
@@ -54,22 +57,25 @@ pub enum Event<D: Dim> {
         /// The piece or rigid body that exited.
         object: ObjectRef,
     },
-    /// A knife opened faces between voxels.
+    /// A knife cut a body: its cutting edge passed between neighbouring voxels and separated them.
     Cut {
         /// The knife.
         knife: KnifeHandle,
         /// Body that was cut.
         body: SoftBodyHandle,
-        /// Middle of the part of the cutting edge that is inside the body [m].
+        /// World-space midpoint of the part of the cutting edge that is inside the body [m].
         point: D::Vector,
-        /// Area cut since the previous [`Event::Cut`] of this knife, in all bodies, measured at rest [m²].
+        /// Area that this knife has cut since its previous [`Event::Cut`], summed over all bodies and
+        /// measured on the undeformed bodies [m²].
         area: f32,
-        /// Work done since the previous [`Event::Cut`] of this knife, in all bodies [J].
+        /// Work that this knife has done by cutting since its previous [`Event::Cut`], summed over all bodies
+        /// [J].
         work: f32,
     },
-    /// A joint exceeded its breaking force, or one of its bodies was removed. The joint was removed, too.
+    /// A joint broke and was removed, because its force exceeded the breaking force or an attached body was
+    /// removed.
     JointBroke {
-        /// Handle of the removed joint.
+        /// Handle of the broken joint.
         joint: JointHandle,
     },
     /// A piece fell asleep.
@@ -103,8 +109,8 @@ pub enum Event<D: Dim> {
         /// Handle of the removed rigid body.
         body: RigidBodyHandle,
     },
-    /// A piece became non-finite or too fast. It was stopped for good, so that it cannot affect the rest of
-    /// the world.
+    /// A piece became non-finite or too fast. The engine froze the piece permanently, so that it cannot
+    /// affect the rest of the world.
     Quarantined {
         /// Body of the quarantined piece.
         body: SoftBodyHandle,
@@ -134,7 +140,7 @@ hash_state! {
 }
 
 impl<D: Dim> Event<D> {
-    /// Returns the events for pieces detached from a body.
+    /// Returns one [`Event::PieceDetached`] for each piece in `pieces`.
     pub(crate) fn parted(body: SoftBodyHandle, pieces: &[PieceId]) -> impl Iterator<Item = Self> {
         pieces
             .iter()
@@ -155,18 +161,18 @@ pub struct Contact<D: Dim> {
     /// Unit normal at `point`, from the second object towards the first. The contact pushes the first object
     /// along the normal, and the second object in the opposite direction.
     pub normal: D::Vector,
-    /// Highest approach speed along the normal at any contact point, in any substep [m/s].
+    /// Highest approach speed along the normal at any contact point, in any substep of the tick [m/s].
     pub speed: f32,
     /// Sum of the magnitudes of the normal impulses over all contact points and substeps [N s]. Divided by
-    /// the tick, it is the mean normal force [N]. Friction is not included.
+    /// the tick length [s], this sum is the mean normal force [N]. Friction is not included.
     pub impulse: f32,
 }
 
 hash_state! { [D: Dim] struct Contact<D> { pair, point, normal, speed, impulse } }
 
 impl<D: Dim> Contact<D> {
-    /// Returns the object that touches a selected one, or `None` if neither object of the pair is selected. If both
-    /// are, returns the second one.
+    /// Returns the partner of a selected object in this contact. Returns `None` if neither object of the pair
+    /// is selected, and the second object if both are.
     pub fn other(&self, object: impl Into<ObjectSelector>) -> Option<ObjectRef> {
         let selector = object.into();
         let [first, second] = self.pair;
@@ -182,14 +188,15 @@ impl<D: Dim> Contact<D> {
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepReport {
-    /// Number of substeps.
+    /// Number of substeps in the tick.
     pub substeps: u32,
-    /// Number of split nodes.
+    /// Number of nodes that were split during the tick.
     pub nodes_split: u32,
-    /// Number of detached pieces.
+    /// Number of pieces that were detached during the tick.
     pub pieces_detached: u32,
-    /// Number of inverted elements in the last substep; they recover by themselves.
+    /// Number of elements that are turned inside out at the end of the tick. Their elastic forces turn them
+    /// back.
     pub inverted: u32,
-    /// Number of pieces that were stopped by the quarantine.
+    /// Number of pieces that were frozen permanently during the tick, see [`Event::Quarantined`].
     pub quarantined: u32,
 }

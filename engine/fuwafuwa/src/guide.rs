@@ -1,6 +1,6 @@
 //! User guide, from a first body to the limits of the engine.
 //!
-//! Documentation only: the module is not part of any program. Every code example in it runs as a test. Terms:
+//! Documentation only: the module contains no code except examples, and every example runs as a test. Terms:
 //! a *body* is soft, a *rigid body* is fixed, kinematic, coupled or dynamic, and a *tick* is 1/60 s by
 //! default.
 //!
@@ -13,7 +13,7 @@
 //! 7. [`saving`]: snapshots, and rolling back
 //! 8. [`costs`]: measured costs
 //! 9. [`determinism`]: guarantees, and ways to break them
-//! 10. [`how`]: the method, with figures
+//! 10. [`how`]: how the simulation works, with figures
 //! 11. [`neighbours`]: comparison with other engines
 //!
 //! # Crates
@@ -26,7 +26,7 @@
 //! | `fuwafuwa_painter` | SVG, PNG and GIF without a GPU: figures, films, tests |
 //! | `fuwafuwa_scan` | medical scans (NIfTI) as bodies, for demonstration and teaching; not a medical device |
 //! | `force_feedback`, `sticks` | force-feedback joysticks; usable without the engine |
-//! | `bevy_fuwafuwa` | plugin for Bevy with all of these |
+//! | `bevy_fuwafuwa` | plugin for the Bevy game engine |
 //! | `fuwafuwa_cli` | command line that runs, films, measures and checks scenes |
 //!
 //! The crates are not published: depend on them by path. Every interface may still change.
@@ -59,7 +59,7 @@ pub mod costs {}
 #[doc = include_str!("../guide/determinism.md")]
 pub mod determinism {}
 
-// Figures are embedded in the page, so that they need no other files.
+// The SVG figures are embedded in the documentation page, so that the page needs no other files.
 #[doc = include_str!("../guide/how_levels.md")]
 #[doc = "<div class=\"fuwafuwa\"><style>.fuwafuwa svg { max-width: min(100%, 44em); max-height: 34em; height: auto; }</style>"]
 #[doc = include_str!("../guide/figures/levels.svg")]

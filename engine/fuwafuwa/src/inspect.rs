@@ -1,4 +1,5 @@
-//! Internals for figures, renderers and checks: lattice arithmetic, mesh, element classes and laws.
+//! Internals for figures, renderers and checks: lattice arithmetic, mesh, element classes and elastic force
+//! laws.
 //!
 //! Simulations do not need this module. Its items follow the implementation and may change with any release.
 

@@ -1,18 +1,18 @@
 //! Soft bodies made of elements that are small at the surface, large inside, and refined where a crack runs
 //! in.
 //!
-//! Modules in reading order; each uses mainly those before it:
+//! Modules in reading order; a module uses mainly the modules above it:
 //! - `error`: the error type
 //! - `foundation`: dimensions, ids, arenas, hashing, threads
 //! - `math`: vectors, rotations, velocities, SIMD lanes
 //! - `material`: elastic, plastic and fracture constants
 //! - `topology`: voxel grid, connectivity, cell hierarchy, element classes, mesh, pieces
 //! - `rigid_body`: rigid bodies, shapes, layers
-//! - `soft_body`: element laws, forces of all elements, state, releases and removals, views
+//! - `soft_body`: elastic force laws, forces of all elements, state, splits and removals, views
 //! - `contact`: broad phase, contact solver, joints
 //! - `fracture`: crack growth, cuts, knives
 //! - `event`, `object_ref`, `query`: results for programs
-//! - `world`: all bodies, and time
+//! - `world`: the simulated world and its time step
 //! - [`inspect`]: internals for figures and renderers
 //!
 //! Two and three dimensions share one implementation; the module `dim` contains everything that differs.
@@ -31,14 +31,14 @@
 //! - `parallel`: steps large bodies on several threads, with bitwise identical results
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
-// Units and sources stand in brackets: [m], [Endo 2004, §3.1].
-// Some public items refer to private ones.
+// In comments, units and sources stand in brackets, for example [m] and [Endo 2004, §3.1]. Rustdoc takes such
+// brackets for links, so its checks of links are off.
 #![allow(rustdoc::private_intra_doc_links)]
 #![allow(rustdoc::broken_intra_doc_links)]
-// An axis indexes several vectors at once; zipping them would hide the formula.
+// Loops over axes use one index for several vectors; zipped iterators would hide the formulas.
 #![allow(clippy::needless_range_loop)]
 
-// Modules in reading order: each uses mainly those before it.
+// Modules in reading order: a module uses mainly the modules above it.
 mod error;
 mod foundation;
 mod math;

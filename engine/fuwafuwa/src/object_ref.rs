@@ -7,17 +7,17 @@ use crate::world::BodyHandle;
 
 /// Object that takes part in contacts, sensor overlaps and queries: a piece of a soft body, or a rigid body.
 ///
-/// References are ordered: pieces by body handle and number, then rigid bodies by handle. The reference of a
-/// rigid body does not contain its [`MotionType`](crate::MotionType);
+/// All pieces precede all rigid bodies. Pieces are ordered by body handle, then by piece number; rigid bodies
+/// by handle. The reference of a rigid body does not contain its [`MotionType`](crate::MotionType);
 /// `world.rigid_body(handle)?.motion_type()` returns it.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ObjectRef {
     /// Piece of a soft body.
     Piece {
-        /// Handle of the body.
+        /// Handle of the soft body that the piece belongs to.
         body: SoftBodyHandle,
-        /// Number of the piece.
+        /// Number of the piece within the body.
         piece: PieceId,
     },
     /// Rigid body.
@@ -58,7 +58,7 @@ impl From<RigidBodyHandle> for ObjectRef {
     }
 }
 
-/// The body of a piece, or the rigid body.
+/// Converts a piece to the handle of its soft body, and a rigid body to its own handle.
 impl From<ObjectRef> for BodyHandle {
     fn from(object: ObjectRef) -> Self {
         match object {

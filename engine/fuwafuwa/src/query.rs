@@ -24,14 +24,15 @@ use query_cache::{BodyTrees, FilledCell, QueryTrees, TreeObject};
 use query_filter::QueryFilter;
 use std::sync::Arc;
 
-/// Number of ternary-search steps for the point of a triangle that is closest to a shape. Each step keeps two
-/// thirds of the interval. 24 steps leave 6·10⁻⁵ of the edge, less than the tolerance of the primitives.
+/// Number of ternary-search steps that find the point of a triangle closest to a shape. Each step shrinks the
+/// search interval to two thirds of its length. After 24 steps, 6·10⁻⁵ of a triangle edge remains, less than
+/// the relative tolerance 10⁻⁴ of the intersection tests.
 const NARROWINGS: usize = 24;
 
 /// Ray for [`World::ray_cast`].
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Ray<D: Dim> {
-    /// Origin [m].
+    /// World-space origin [m].
     pub origin: D::Vector,
     /// Direction, of any length except 0.
     pub direction: D::Vector,
@@ -47,25 +48,26 @@ impl<D: Dim> Ray<D> {
 /// Point on the surface of an object, found by a query.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct QueryHit<D: Dim> {
-    /// The object.
+    /// Object on whose surface the point lies.
     pub object: ObjectRef,
-    /// Element of the surface; `None` for a rigid body.
+    /// Element at `point`; `None` for a rigid body.
     pub element: Option<HitElement>,
     /// Position on the surface [m].
     pub point: D::Vector,
     /// Outward unit normal of the surface at `point`, also for queries that start inside the object.
     pub normal: D::Vector,
-    /// Distance of `point` from the origin of the ray, or from the given point [m]. Never negative.
+    /// Distance from the origin of the ray, or from the point given to the query, to `point` [m]. Never
+    /// negative.
     pub distance: f32,
 }
 
 /// Object that contains a point or overlaps a shape.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct QueryOverlap {
-    /// The object.
+    /// Piece or rigid body that contains the point or overlaps the shape.
     pub object: ObjectRef,
-    /// Element at the point, or the one with the lowest id that was found to overlap the shape; `None` for a
-    /// rigid body.
+    /// Element that contains the point. For a shape, the element with the lowest id among the elements found
+    /// to overlap it. `None` for a rigid body.
     pub element: Option<HitElement>,
 }
 
@@ -74,14 +76,14 @@ pub struct QueryOverlap {
 pub struct HitElement {
     /// Id of the element.
     pub id: ElementId,
-    /// Number of the material at the element, 1 for the first.
+    /// Material number, counted from 1, of the first voxel in the element.
     pub material: u8,
 }
 
 /// Queries on the present state. The world keeps search trees between queries. The first query after a change
-/// updates them, which visits each exposed face of the bodies that moved. Further queries are cheap, also
-/// from several threads. Of equally distant objects, a query returns the first one in the order of
-/// [`ObjectRef`].
+/// updates the trees, at a cost proportional to the number of exposed faces of the moved bodies. Further
+/// queries reuse the trees and may run on several threads. Of equally distant objects, a query returns the
+/// first one in the order of [`ObjectRef`].
 impl<D: Dim> World<D> {
     /// Casts a ray. Returns the first hit on the surface of an object, from outside or inside, within
     /// `max_distance` [m], which may be infinite. Returns `None` if the direction has length 0, a coordinate
@@ -264,8 +266,8 @@ impl<D: Dim> World<D> {
             }
             0.0
         });
-        // A piece that contains the whole shape has no face near it, so pieces at the centre of the shape's
-        // bounding box are added.
+        // A piece that contains the whole shape may have no face near the shape. The pieces that contain the
+        // centre of the shape's bounding box are therefore added.
         let centre = (low + high) * 0.5;
         if centre.is_finite() {
             found.extend(query.pieces_at(centre));
@@ -281,11 +283,11 @@ struct Query<'a, D: Dim> {
     filter: &'a QueryFilter<'a>,
 }
 
-/// Object of a running query.
+/// Object that the search of a query has reached.
 enum Found<'a> {
     Rigid(&'a RigidState),
     Soft(&'a BodyTrees),
-    /// The filter rejects the object.
+    /// Rejected by the filter.
     Filtered,
 }
 
@@ -298,9 +300,11 @@ impl<'a, D: Dim> Query<'a, D> {
         }
     }
 
-    /// Visits the objects with a cost of at most `limit`, and then of at most the smallest cost that `visit`
-    /// has returned so far; see [`Tree::search`](bounding_tree::Tree::search). `visit` receives the rank of
-    /// an object in the order of [`ObjectRef`] and the cost of its box.
+    /// Visits first all unbounded objects with a cost of 0, then the bounded objects by
+    /// [`Tree::search`](bounding_tree::Tree::search). `cost` returns the cost of a bounding box, for example
+    /// its distance. Boxes with a cost above `limit` are skipped. `visit` receives the rank of an object in
+    /// the order of [`ObjectRef`] and the cost of its box. The limit falls to the smallest value that `visit`
+    /// has returned.
     fn search(
         &self,
         limit: f32,
@@ -317,8 +321,8 @@ impl<'a, D: Dim> Query<'a, D> {
         });
     }
 
-    /// Returns the object with a rank in the order of [`ObjectRef`], or [`Found::Filtered`] if the filter
-    /// rejects its body.
+    /// Returns the object with index `rank` in the order of [`ObjectRef`]. Returns [`Found::Filtered`] if the
+    /// filter rejects the rigid body or the whole soft body.
     fn object(&self, rank: usize) -> Found<'_> {
         match self.trees.objects[rank] {
             TreeObject::Rigid(id) => {
@@ -399,7 +403,8 @@ impl<'a, D: Dim> Query<'a, D> {
         })
     }
 
-    /// Returns the pieces that contain a point, possibly repeated.
+    /// Returns the accepted pieces that contain a point, one entry for each filled cell that contains the
+    /// point.
     fn pieces_at(&self, point: Vec3) -> Vec<QueryOverlap> {
         let cost = |bounds: &Bounds| zero_if(contains(bounds, point));
         let mut found = Vec::new();
@@ -434,18 +439,18 @@ impl<'a, D: Dim> Query<'a, D> {
     }
 }
 
-/// Closest hit of a running query.
+/// Closest hit that a query has found so far.
 struct Closest<D: Dim> {
     hit: Option<QueryHit<D>>,
     /// Distance of the closest hit so far [m]; before the first hit, the maximum distance of the query.
     limit: f32,
     /// Rank of the hit object in the order of [`ObjectRef`], and index of the hit face. Of equally distant
-    /// hits, the one with the lowest rank is kept.
+    /// hits, the one with the lowest value is kept.
     rank: [usize; 2],
 }
 
 impl<D: Dim> Closest<D> {
-    /// Returns the state before the first hit; `None` if the distance is negative or NaN.
+    /// Returns a search without hits yet, or `None` if `max_distance` is negative or NaN.
     fn within(max_distance: f32) -> Option<Self> {
         (max_distance >= 0.0).then_some(Self {
             hit: None,
@@ -454,8 +459,8 @@ impl<D: Dim> Closest<D> {
         })
     }
 
-    /// Keeps a hit if it is closer than the closest hit so far, or equally close with a lower rank. `hit` is
-    /// called only in these cases; it returns `None` if the filter rejects the object.
+    /// Replaces the closest hit if the new hit is closer, or equally close with a lower rank. `hit` builds
+    /// the new hit and is called only in these cases. It returns `None` if the filter rejects the object.
     fn consider(
         &mut self,
         distance: f32,
@@ -471,15 +476,15 @@ impl<D: Dim> Closest<D> {
     }
 }
 
-/// Sorts overlaps by object, and keeps for each object only the one with the lowest element id.
+/// Sorts overlaps by object, and keeps one overlap for each object: the one with the lowest element id.
 fn each_once(mut found: Vec<QueryOverlap>) -> Vec<QueryOverlap> {
     found.sort_by_key(|found| (found.object, found.element));
     found.dedup_by_key(|found| found.object);
     found
 }
 
-/// Returns the cost of a box for a query without distances: 0 if the condition holds, so that the search
-/// visits the box, otherwise infinity.
+/// Returns 0 if the condition holds, otherwise infinity. As the cost of a box in `Query::search`, 0 visits
+/// the box and infinity skips it.
 fn zero_if(condition: bool) -> f32 {
     if condition { 0.0 } else { f32::INFINITY }
 }
@@ -488,13 +493,13 @@ fn contains(bounds: &Bounds, point: Vec3) -> bool {
     overlap(bounds, &[point, point])
 }
 
-/// Returns the two triangles of a quad.
+/// Splits a quad into two triangles along the diagonal from `a` to `c`.
 fn triangles([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// Returns the distance [m] along a ray with a unit direction to a bare face: a segment in 2D, two triangles
-/// in 3D.
+/// Returns the distance [m] at which a ray with a unit direction hits an exposed face, or `None` if it misses
+/// the face. The face is a segment in 2D and two triangles in 3D.
 fn distance_to<D: Dim>(facet: &Facet, from: Vec3, direction: Vec3) -> Option<f32> {
     let [a, b, ..] = facet.corners;
     if D::N == 2 {
@@ -504,7 +509,7 @@ fn distance_to<D: Dim>(facet: &Facet, from: Vec3, direction: Vec3) -> Option<f32
     met.into_iter().flatten().reduce(f32::min)
 }
 
-/// Returns the point on a bare face that is nearest to `at`.
+/// Returns the point on an exposed face that is nearest to `at`.
 fn nearest_on<D: Dim>(facet: &Facet, at: Vec3) -> Vec3 {
     let [a, b, ..] = facet.corners;
     if D::N == 2 {
@@ -519,8 +524,8 @@ fn nearest_on<D: Dim>(facet: &Facet, at: Vec3) -> Vec3 {
     }
 }
 
-/// Returns whether a bare face intersects a shape. The ternary search for the closest approach is exact,
-/// because the distance from a convex shape has a single minimum.
+/// Returns whether an exposed face intersects a shape. In 3D, a ternary search finds the segment across each
+/// triangle with the smallest gap to the shape. The gap has a single minimum, because the shape is convex.
 fn is_near<D: Dim>(facet: &Facet, shape: &Solid) -> bool {
     let gap = |from: Vec3, to: Vec3| {
         let radius = 0.0;
@@ -555,7 +560,8 @@ fn is_near<D: Dim>(facet: &Facet, shape: &Solid) -> bool {
     })
 }
 
-/// Returns whether two shapes overlap. Two half-spaces do, unless they face each other with a gap in between.
+/// Returns whether two shapes overlap. Two half-spaces overlap, unless their surfaces are parallel and face
+/// each other across a gap.
 fn shapes_overlap(a: &Solid, b: &Solid) -> bool {
     match (*a, *b) {
         (

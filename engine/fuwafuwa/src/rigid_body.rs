@@ -2,8 +2,8 @@
 //!
 //! A coupled rigid body follows its target through a spring and a damper, the *virtual coupling* [Colgate
 //! 1995]. Because the body has inertia, the coupling force is smooth, whereas the raw contact force jumps. A
-//! force-feedback device should therefore play the coupling force. Contacts turn only dynamic rigid bodies.
-//! Kinematic and coupled bodies turn to their target rotation.
+//! force-feedback device should therefore play the coupling force. Contacts rotate only dynamic rigid bodies.
+//! Kinematic and coupled bodies rotate to their target rotation.
 
 mod dynamics;
 mod inertia;
@@ -39,19 +39,19 @@ pub enum MotionType {
     /// Kinematic: reaches its target pose at the end of each tick, through any obstacle.
     Kinematic,
     /// Coupled: pulled towards its target position by a spring and a damper, and stopped by contacts.
-    /// Contacts do not turn it; it turns to its target rotation.
+    /// Contacts do not rotate the body; it rotates to its target rotation.
     Coupled {
         /// Mass [kg], 1e-6 to 1e6, default 2. A lighter body follows faster and feels rougher.
         mass: f32,
-        /// Spring stiffness [N/m], default 3000. Limited to mass / (4 · substep²), so that the spring stays
-        /// stable.
+        /// Spring stiffness [N/m], default 3000. To keep the spring stable, the stiffness is limited to mass
+        /// / (4 h²), where h is the length of a substep [s].
         stiffness: f32,
         /// Damping ratio, above 0 and up to 10, default 0.9. Below 0.5 the body oscillates around its target.
         damping: f32,
         /// Maximum force of the coupling [N], default 1000; infinite = no limit.
         max_force: f32,
     },
-    /// Dynamic: moved and turned by gravity and contacts. The shape must be bounded and centred on its
+    /// Dynamic: moved and rotated by gravity and contacts. The shape must be bounded and centred on its
     /// origin, see [`RigidBody::dynamic`].
     Dynamic {
         /// Mass [kg], 1e-6 to 1e6, with uniform density. A body ten times as heavy as the soft or rigid body
@@ -75,8 +75,8 @@ impl MotionType {
         matches!(self, Self::Kinematic | Self::Coupled { .. })
     }
 
-    /// Returns the moments of inertia of a body with this motion type and shape in a world of `D`; `None`
-    /// unless the type is dynamic.
+    /// Returns the moments of inertia of a body with this motion type and shape in a world of dimension `D`;
+    /// `None` unless the type is dynamic.
     fn inertia<D: Dim>(self, shape: &Solid) -> Option<Inertia> {
         match self {
             Self::Dynamic { mass } => Some(Inertia::of::<D>(shape, mass)),
@@ -96,8 +96,8 @@ impl Default for MotionType {
     }
 }
 
-/// Rigid body to add with [`World::add_rigid_body`](crate::World::add_rigid_body). In contacts with soft bodies it
-/// collides with their nodes, so a rigid body thinner than three of their voxels may slip in between.
+/// Rigid body to add with [`World::add_rigid_body`](crate::World::add_rigid_body). Of a soft body, only the nodes
+/// collide with rigid bodies. A rigid body thinner than three voxels may slip between the nodes.
 ///
 /// ```
 /// use fuwafuwa::{Dim3, RigidBody, Rotation, Shape, Vec3, World, WorldConfig};
@@ -122,14 +122,15 @@ impl Default for MotionType {
 pub struct RigidBody<D: Dim> {
     /// Motion type.
     pub motion_type: MotionType,
-    /// Shape in local coordinates. That of a dynamic body must be bounded and centred on the origin.
+    /// Shape in local coordinates. The shape of a dynamic body must be bounded and centred on the local
+    /// origin.
     pub shape: Shape<D>,
     /// Position of the local origin [m], default 0.
     pub position: D::Vector,
-    /// Rotation from local to world axes. In 2D only the part about the third axis is used.
+    /// Rotation from local to world axes, default none. In 2D only the part about the third axis is used.
     pub rotation: Rotation,
-    /// Initial velocity, default 0. A fixed body has none, a coupled body only a linear one, and that of a kinematic
-    /// body is replaced in its first tick.
+    /// Initial velocity, default 0. A fixed body ignores it, and a coupled body uses only the linear part. A
+    /// kinematic body gets the velocity towards its target in the first tick instead.
     pub velocity: Velocity<D>,
     /// Target position of a kinematic or coupled body [m]; `None` (default) = its position.
     pub target_position: Option<D::Vector>,
@@ -145,10 +146,11 @@ pub struct RigidBody<D: Dim> {
     /// least one is dynamic; the larger of the two values applies. In contacts with soft bodies, elasticity
     /// alone determines the rebound.
     pub restitution: f32,
-    /// Collision layers.
+    /// Collision layers. By default, the body is in the first layer and collides with all layers.
     pub layers: Layers,
-    /// Whether the body is a sensor. A sensor has no contacts, but reports
-    /// [`Event::SensorEntered`](crate::Event::SensorEntered) and [`Event::SensorExited`](crate::Event::SensorExited).
+    /// Whether the body is a sensor, default false. A sensor has no contacts, but reports
+    /// [`Event::SensorEntered`](crate::Event::SensorEntered) and
+    /// [`Event::SensorExited`](crate::Event::SensorExited).
     pub is_sensor: bool,
     /// Number for use by the program; the engine ignores it.
     pub user_data: u64,
@@ -159,12 +161,13 @@ pub struct RigidBody<D: Dim> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Reaction<D: Dim> {
-    /// Contact force [N]. Discontinuous when a soft body tears.
+    /// Contact force on the body [N]. Discontinuous when a soft body tears.
     pub contact: D::Vector,
-    /// Torque of the contacts and knives about the [position](RigidBodyRef::position) [N m]; in 2D positive is
-    /// counterclockwise.
+    /// Torque of contacts and knives on the body about its [position](RigidBodyRef::position) [N m]; in 2D
+    /// positive is counterclockwise.
     pub torque: D::Angular,
-    /// Reversed force of the virtual coupling [N]: the force to play on a force-feedback device.
+    /// Force of the virtual coupling on the target, opposite to its force on the body [N]. A force-feedback
+    /// device should play this force.
     pub coupling: D::Vector,
 }
 
@@ -228,14 +231,14 @@ impl<D: Dim> RigidBody<D> {
         }
     }
 
-    /// Returns the body at a position [m]. Unless the shape is centred on the origin, as [`RigidBody::dynamic`] makes it,
-    /// its centre is elsewhere.
+    /// Returns the body with its local origin at a position [m]. The centre of the shape is there only if the
+    /// shape is centred on the local origin, as [`RigidBody::dynamic`] makes it.
     #[must_use]
     pub fn at(self, position: D::Vector) -> Self {
         Self { position, ..self }
     }
 
-    /// Returns the body translated `by` [m], target included.
+    /// Returns the body translated by the vector `by` [m]. Its target position is translated, too.
     #[must_use]
     pub fn translated(self, by: D::Vector) -> Self {
         Self {
@@ -245,8 +248,8 @@ impl<D: Dim> RigidBody<D> {
         }
     }
 
-    /// Returns the body rotated about its [`position`](RigidBody::position), target included. In 2D only the part of
-    /// the rotation about the third axis is applied.
+    /// Returns the body rotated about its own [`position`](RigidBody::position). Its target rotation is
+    /// rotated, too. In 2D only the part of the rotation about the third axis is applied.
     #[must_use]
     pub fn rotated(self, by: Rotation) -> Self {
         let by = by.seen_in::<D>();
@@ -257,8 +260,8 @@ impl<D: Dim> RigidBody<D> {
         }
     }
 
-    /// Returns the body rotated about a point [m], velocity and target included. In 2D only the part of the rotation
-    /// about the third axis is applied.
+    /// Returns the body rotated about a point [m]. Its velocity and its target are rotated, too. In 2D only
+    /// the part of the rotation about the third axis is applied.
     #[must_use]
     pub fn rotated_about(self, rotation: Rotation, point: D::Vector) -> Self {
         let rotation = rotation.seen_in::<D>();
@@ -320,7 +323,8 @@ impl<D: Dim> RigidBody<D> {
         Self { layers, ..self }
     }
 
-    /// Returns the body as a [sensor](RigidBody::is_sensor), or as a body with contacts.
+    /// Returns the body as a [sensor](RigidBody::is_sensor) if `is_sensor` is true, otherwise as a body with
+    /// contacts.
     #[must_use]
     pub fn with_sensor(self, is_sensor: bool) -> Self {
         Self { is_sensor, ..self }

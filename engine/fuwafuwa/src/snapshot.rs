@@ -31,13 +31,12 @@ pub fn save<D: Dim>(world: &World<D>) -> Vec<u8> {
 /// Loads a world from the bytes of [`save`].
 ///
 /// # Errors
-/// [`Error`] if the bytes are not a snapshot, have another version or number of dimensions, or are
-/// damaged. Also if the voxels, connections, elements, nodes or pieces of a body contradict each other, or if
-/// a position is not finite.
+/// [`Error`] if the bytes are not a snapshot, have another format version or number of dimensions, or are
+/// damaged. A snapshot is also rejected if a position is not finite, or if the voxels, connections, elements,
+/// nodes or pieces of a body contradict each other.
 ///
-/// Input from untrusted sources is therefore safe: a loaded world can be stepped, and at worst it diverges,
-/// like a badly posed scene. Time and memory are bounded by the number of bytes, not by lengths that the
-/// bytes claim.
+/// Input from untrusted sources is therefore safe: a loaded world can be stepped, and at worst its simulation
+/// diverges. Time and memory are bounded by the number of bytes, not by lengths that the bytes claim.
 #[inline(never)]
 pub fn load<D: Dim>(bytes: &[u8]) -> Result<World<D>, Error> {
     if bytes.len() < HEADER || bytes[..4] != MAGIC {

@@ -37,14 +37,16 @@ pub use removal::{PieceSize, Removed};
 #[cfg(feature = "serde")]
 pub(crate) use stored_world::StoredWorld;
 
-/// Decay rate [1/s] of the angular velocity of a one-voxel piece that touches something. The decay imitates a
-/// cube, which does not roll. At this rate, the rotation falls to an eighth in 0.1 s. A higher rate would
-/// stop the rotation in the air between two bounces.
+/// Decay rate [1/s] of the angular velocity of a one-voxel piece that touches something. Other pieces touch
+/// it as a ball, but it should move like a cube, which does not roll. At this rate, the rotation falls to an
+/// eighth in 0.1 s. A higher rate would stop the rotation in the air between two bounces.
 const CRUMB_SPIN_LOSS: f32 = 20.0;
-/// Extra drag [1/s] of pieces that touch something and move slower than `SETTLING_SPEED` [m/s]. Without this
-/// drag, heaps creep for a long time before they fall asleep. A falling body exceeds the speed after 0.5 mm.
-/// With a higher speed, the braking of sliding pieces would be visible.
+/// Extra drag [1/s] of pieces that touch something and move slower than `SETTLING_SPEED`. Without this drag,
+/// heaps creep for a long time before they fall asleep.
 const SETTLING: f32 = 2.0;
+/// Speed below which a piece that touches something gets the extra drag `SETTLING` [m/s], as root mean square
+/// over its nodes. A body that starts to fall exceeds this speed after 0.5 mm. At a higher threshold, the
+/// braking of sliding pieces would be visible.
 const SETTLING_SPEED: f64 = 0.1;
 /// Node speed above which a piece is quarantined [m/s]. Speeds are also limited to one voxel per substep. At
 /// the usual 960 substeps a second, this constant therefore matters only for voxels wider than 1 m.
@@ -63,9 +65,9 @@ pub struct World<D: Dim> {
     ticks: u64,
     nearby: Nearby,
     events: Vec<Event<D>>,
-    /// Contacts of the last tick, ascending by pair.
+    /// Contacts of the last tick, ascending by their pair of objects.
     touching: Vec<Contact<D>>,
-    /// Sensors of the last tick, each with an object inside, ascending by sensor and object.
+    /// Pairs of a sensor and an object inside it at the end of the last tick, in ascending order.
     inside: Vec<(RigidBodyHandle, ObjectRef)>,
     #[cfg_attr(feature = "serde", serde(skip))]
     contacts: Contacts,
@@ -166,9 +168,9 @@ impl<D: Dim> World<D> {
         report
     }
 
-    /// Returns the number of substeps of a tick, as many as the stiffest body requires. In 1/60 s there are
-    /// at least [`DEFAULT_SUBSTEPS`] and at most [`WorldConfig::max_substeps`]. If the maximum is below the
-    /// minimum, the maximum applies.
+    /// Returns the number of substeps in a tick. The stiffest body determines this number, within limits: in
+    /// 1/60 s there are at least [`DEFAULT_SUBSTEPS`] and at most [`WorldConfig::max_substeps`]. If the
+    /// maximum is below the minimum, the maximum applies.
     pub fn substeps(&self) -> u32 {
         let longest = self.bodies.iter().map(SoftBody::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
@@ -260,7 +262,8 @@ impl<D: Dim> World<D> {
     }
 
     /// Solves joints, knives and contacts, and applies their impulses to the velocities. Returns the sleeping
-    /// pieces and bodies that were hit. They act as immovable walls in this substep and wake at its end.
+    /// pieces and rigid bodies that were hit. They act as immovable walls in this substep and wake at its
+    /// end.
     fn touch(&mut self, duration: f32) -> Hits {
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
@@ -294,8 +297,8 @@ impl<D: Dim> World<D> {
         self.part_joints(broken);
     }
 
-    /// Quarantines pieces that are non-finite or too fast: resets their nodes to the positions before the
-    /// tick, and keeps the pieces there for good.
+    /// Quarantines pieces that are non-finite or too fast: resets their nodes to the positions at the start
+    /// of the tick, and freezes the pieces permanently.
     fn quarantine(&mut self, report: &mut StepReport) {
         for (id, body) in self.bodies.entries_mut() {
             body.refresh_awake();
@@ -342,7 +345,7 @@ impl<D: Dim> World<D> {
         fall_asleep_rigid(&mut self.rigids, &handled, self.config.tick);
     }
 
-    /// Wakes the dynamic rigid bodies that were hit.
+    /// Wakes the dynamic rigid bodies in `hits`, and requests a new search for nodes near rigid bodies.
     fn wake_rigids(&mut self, hits: &[RigidSlot]) {
         for &slot in hits {
             self.rigids.at_mut(slot).wake();
@@ -352,7 +355,7 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Wakes the sleeping pieces that were hit.
+    /// Wakes the sleeping pieces in `hits`, and reports an event for each.
     fn wake(&mut self, hits: &[Hit]) {
         let woken = wake(&mut self.bodies, hits);
         if woken.is_empty() {
@@ -369,7 +372,7 @@ impl<D: Dim> World<D> {
         self.events.extend(events);
     }
 
-    /// Returns for each piece of each body whether it touches anything.
+    /// Returns a flag for each piece of each body: whether a contact presses on the piece.
     fn touching(&self) -> IndexVec<BodySlot, IndexVec<PieceId, bool>> {
         let none = |body: Option<&SoftBody<D>>| {
             let pieces = body.map_or(0, |body| body.pieces().list.len());
@@ -377,8 +380,8 @@ impl<D: Dim> World<D> {
         };
         let mut touching: IndexVec<_, IndexVec<_, bool>> = self.bodies.slots().map(none).collect();
         for (body, piece) in self.nearby.pressed(&self.bodies) {
-            // The pair lists are from the last substep. If the slot was reused since, they may name pieces that
-            // the new body does not have; these are skipped.
+            // `pressed` reads the contacts of the last substep. If a new body has since replaced the body in
+            // its arena slot, a contact may name a piece that the new body does not have; it is skipped.
             if let Some(touches) = touching[body].get_mut(piece.index()) {
                 *touches = true;
             }
@@ -387,13 +390,14 @@ impl<D: Dim> World<D> {
     }
 }
 
-/// Returns whether a fracture and damping round is due in this substep. The `rounds` of a tick are spread
-/// evenly over its substeps.
+/// Returns whether fracture and damping are due in this substep. They run `rounds` times per tick, spread
+/// evenly over the substeps.
 fn is_due(substep: u32, substeps: u32, rounds: u32) -> bool {
     substep * rounds % substeps < rounds
 }
 
-/// Returns the damping rates of a piece [1/s].
+/// Returns the damping rates of a piece [1/s]. `rate` is the rate of its internal vibration, `drag` the air
+/// drag.
 fn slowing(
     motion: &PieceMotion,
     touches: bool,

@@ -1,4 +1,4 @@
-//! Actions on bodies from outside: rotation, translation, impulses, sleep, configuration, fields.
+//! Methods that act on bodies from outside: rotation, translation, impulses, sleep, configuration, fields.
 
 use fuwafuwa::{
     Bookmark, Dim, Dim2, Dim3, DimAngular, DimVector, Error, Event, Hooks, Impulse, Material,
@@ -87,7 +87,8 @@ fn rotated_body_stays_at_rest() {
     }
 }
 
-/// Checks that a world moves like the original after its body was rotated in the middle of tearing.
+/// Checks that `rotate_about` rotates the motion of a tearing body: after further ticks, the rotated body has
+/// the rotated momentum and the kinetic energy of the original.
 fn check_turned_in_motion<D: Dim>() {
     let rotation = Rotation::in_plane(PI);
     let (mut world, id) = with(weightless(), ball::<D>(16));
@@ -101,7 +102,8 @@ fn check_turned_in_motion<D: Dim>() {
         world.step();
         turned.step();
     }
-    // Compares total momentum and energy instead of nodes, because rounding can change the path of cracks.
+    // Compares total momentum and energy instead of node positions, because rounding can change the path of
+    // cracks.
     let [momentum, other] = [&world, &turned].map(|world| world[id].momentum().linear);
     let energies = [&world, &turned].map(|world| world[id].kinetic_energy());
     assert!(
@@ -216,15 +218,15 @@ fn check_pushed<D: Dim>() {
     assert!((straight.linear.y / mass - 2.0).abs() < 1e-3);
     let turning = gained(Vec3::Z * 3.0);
     assert!((turning.linear.y / mass - 2.0).abs() < 1e-3);
-    // Moment of inertia about the centre: m r²/2 for a disc, 2/5 m r² for a ball.
+    // Moment of inertia about the centre, as a share of m r²: 1/2 for a disc, 2/5 for a ball.
     let share = if D::N == 2 { 0.5 } else { 0.4 };
     let inertia = share * mass * 0.25;
     let spin = turning.less(straight).angular.z / inertia;
     assert!((spin - 3.0).abs() < 0.6, "{spin}");
 }
 
-/// Checks that a body that is almost asleep stays awake when gravity sets in. At first, its speed is still
-/// below the sleep threshold.
+/// Checks that a body that is almost asleep stays awake when gravity is switched on. At first, the body still
+/// moves slower than the sleep threshold.
 #[test]
 fn gravity_change_resets_sleep_timer() {
     let pulls: [fn(&mut World<Dim2>, SoftBodyHandle); 3] = [
@@ -380,8 +382,8 @@ fn check_field<D: Dim>() {
             let body = &world[id];
             body.momentum().linear.x / body.total_mass()
         });
-        // The field has 5 m/s² at its reach. The balls are at three times the reach, where a ninth of it acts
-        // on them for a tenth of a second.
+        // Up to its reach of 1 m, the field accelerates by 5 m/s². At the balls, 3 m from its centre, it
+        // accelerates by a ninth of this for 0.1 s.
         assert!((speeds[0] - 5.0 / 9.0 * 0.1).abs() < 0.01, "{speeds:?}");
         assert!((speeds[0] + speeds[1]).abs() < 0.01, "{speeds:?}");
     }
@@ -393,8 +395,8 @@ fn field_accelerates_towards_centre() {
     check_field::<Dim3>();
 }
 
-/// Checks the torque on a bar that presses on a body one metre to the right of the bar's centre: it is
-/// counterclockwise.
+/// Checks the torque on a coupled bar that presses on a body one metre to the right of the bar's centre. The
+/// body pushes the bar up, so the torque is counterclockwise.
 fn check_torque<D: Dim>() {
     let (mut world, _) = with(weightless(), ball::<D>(16));
     let bar = Shape::capsule(-D::Vector::X, vector(3.0, 0.0, 0.0), 0.1);
@@ -417,7 +419,8 @@ fn check_torque<D: Dim>() {
         });
     }
     assert!(force > 0.1, "{force}");
-    // The top of the ball is one metre to the right of the bar's centre.
+    // The contact is one metre to the right of the bar's centre, so the torque [N m] equals the force [N]
+    // times 1 m.
     assert!((torque.z / force - 1.0).abs() < 0.1, "{torque:?} {force}");
     assert!(torque.x.abs() + torque.y.abs() < 0.1 * torque.z);
 }
@@ -428,7 +431,7 @@ fn coupled_body_reports_contact_torque() {
     check_torque::<Dim3>();
 }
 
-/// Number of actions in `act`.
+/// Number of different actions in `act`.
 const ACTS: usize = 8;
 
 fn act<D: Dim>(

@@ -1,4 +1,4 @@
-//! Actions that mean the same for soft and rigid bodies, in 2D and 3D.
+//! Methods that act alike on soft and rigid bodies, in 2D and 3D.
 
 use fuwafuwa::{
     BodyHandle, Dim, Dim2, Dim3, DimAngular, DimVector, Impulse, Layers, Material, MotionType,
@@ -90,8 +90,8 @@ fn set_velocity_moves_soft_and_rigid_bodies_alike() {
 fn check_impulse<D: Dim>() {
     let (mut world, bodies) = cubes::<D>();
     for body in bodies {
-        // Both cubes have a mass of 100 kg, so 50 N s give 0.5 m/s. Their moment of inertia about the centre
-        // is m/6 = 16.7 kg m².
+        // Both cubes have a mass m = 100 kg, so 50 N s give 0.5 m/s. Their moment of inertia about the centre
+        // is m · (1 m)² / 6 = 16.7 kg m².
         let impulse = Impulse::at(D::Vector::ZERO, vector(50.0, 0.0, 0.0)).within(2.0);
         world.apply_impulse(body, impulse).unwrap();
         assert_near(

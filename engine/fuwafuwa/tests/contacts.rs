@@ -21,7 +21,7 @@ fn floored<D: Dim>() -> (World<D>, RigidBodyHandle) {
     (world, floor)
 }
 
-/// Adds a ball 1 m wide that does not tear, with its low corner at a height [m].
+/// Adds a ball 1 m wide that does not tear, with its lowest point at a height [m].
 fn ball<D: Dim>(world: &mut World<D>, height: f32) -> SoftBodyHandle {
     let rubber = Material {
         elasticity: Elasticity {
@@ -47,7 +47,7 @@ fn of_body(party: ObjectRef, body: SoftBodyHandle) -> bool {
 }
 
 /// Checks the contact events of a ball that falls for 0.45 s, bounces, comes to rest, and is lifted. Every
-/// contact that begins also ends. The first contact begins at the speed of the fall.
+/// contact that begins must end. The first contact begins at the speed of the fall.
 fn contacts_begin_and_end<D: Dim>() {
     let (mut world, floor) = floored::<D>();
     let id = ball(&mut world, 1.0);
@@ -76,7 +76,7 @@ fn contacts_begin_and_end<D: Dim>() {
         }
     }
     let (first, speed) = began[0];
-    // A free fall from h = 1 m ends at the speed √(2 g h) = 4.43 m/s.
+    // A free fall by h = 1 m ends at the speed √(2 g h) = 4.43 m/s.
     assert!(
         (26..30).contains(&first) && (speed - 4.43).abs() < 0.3,
         "{first} {speed}"
@@ -143,7 +143,7 @@ fn rigid_contact_event_reports_impulse_and_speed() {
     assert!((speed - 4.43).abs() < 0.3, "{speed}");
 }
 
-/// A body that falls through a sensor enters and exits the sensor without contact.
+/// Checks that a body that falls through a sensor enters and exits the sensor without contact.
 fn sensors_tell<D: Dim>() {
     let (mut world, _) = floored::<D>();
     let gate = Shape::cuboid(vector(4.0, 0.2, 2.0)).translated(vector(0.5, 2.5, 0.5));
@@ -180,8 +180,8 @@ fn sensor_reports_entered_and_exited_bodies() {
     sensors_tell::<Dim3>();
 }
 
-/// Checks sensors of all shapes with pieces that fly through them: the events agree with a test of every node
-/// against every sensor.
+/// Checks sensors of all shapes with pieces that fly through them. The sensor events must agree with a test
+/// of every node against every sensor.
 fn sensors_agree_with_test_of_every_node<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let mut seed = 7u32;
@@ -264,8 +264,8 @@ fn sensor_events_agree_with_test_of_every_node() {
     sensors_agree_with_test_of_every_node::<Dim3>();
 }
 
-/// Checks that two balls, one above the other, collide or not depending on their layers. The floor supports
-/// both.
+/// Checks that two balls, one above the other, collide only if their layers allow it. The floor supports both
+/// balls in either case.
 fn layers_part<D: Dim>() {
     for (filters, meets) in [(u32::MAX, true), (1, false)] {
         let (mut world, _) = floored::<D>();
@@ -284,7 +284,8 @@ fn layers_part<D: Dim>() {
         let [low, high] = [low, high].map(|id| world[id].centre_of_mass()[1]);
         assert_eq!(high - low > 0.5, meets, "{low} {high}");
         assert!(low > 0.3 && high > 0.3);
-        // The box collides with the balls even if the balls do not collide with each other.
+        // The box collides with the balls, even if the layers of the balls keep them from colliding with each
+        // other.
         assert!(world.rigid_body(crate_id).unwrap().position()[1] > 0.8 || meets);
     }
 }
@@ -322,7 +323,7 @@ fn user_data_persists_until_removal() {
     );
 }
 
-/// Returns the objects in contact with an object.
+/// Returns the objects in contact with `object`.
 fn partners<D: Dim>(world: &World<D>, object: ObjectRef) -> Vec<ObjectRef> {
     let contacts = world.contacts_of(object).unwrap();
     contacts
@@ -412,8 +413,8 @@ fn sleeping_contact_is_listed_and_survives_a_clone() {
     assert_eq!(known, contacts(&world.clone()));
 }
 
-/// Checks that two pieces that press on each other send one event per tick, with the piece of the lower
-/// handle first.
+/// Checks that two pieces that press on each other send one contact event per tick. The piece with the lower
+/// handle must come first.
 fn pieces_press<D: Dim>() {
     let (mut world, floor) = floored::<D>();
     let bodies = [0.0, 1.02].map(|height| ball(&mut world, height));
@@ -438,7 +439,7 @@ fn pieces_press<D: Dim>() {
         let forces: Vec<&Contact<D>> = forces.collect();
         assert!(forces.len() <= 1, "{forces:?}");
         for contact in forces {
-            // The normal points from the upper ball to the lower one, which is the first of the pair.
+            // The normal points from the upper ball to the lower one, which is the first object of the pair.
             assert!(contact.normal[1] < -0.5, "{contact:?}");
             assert!(partners(&world, low).contains(&high));
             assert!(partners(&world, high).contains(&low));

@@ -7,10 +7,10 @@ use fuwafuwa::{
 };
 use glam::DVec3;
 
-/// Minimum depth of an embedded crumb [voxels]: its centre must lie inside an element of another piece, at
-/// least this far from all faces.
+/// Minimum depth at which a crumb counts as embedded [voxels]: its centre must lie inside an element of
+/// another piece, at least this far from the centres of all exposed faces.
 const DEPTH: f32 = 0.6;
-/// Maximum number of elements of a piece that these tests count as a crumb.
+/// Maximum number of elements of a piece that counts as a crumb in these tests.
 const SMALL: u32 = 16;
 
 /// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
@@ -18,7 +18,7 @@ fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
 
-/// Returns twice the area of a triangle, or six times the volume of a tetrahedron.
+/// Returns twice the signed area of a triangle, or six times the signed volume of a tetrahedron.
 fn volume<D: Dim>(points: &[Vec3]) -> f32 {
     let [a, b] = [1, 2].map(|k| points[k] - points[0]);
     match D::N {
@@ -27,7 +27,8 @@ fn volume<D: Dim>(points: &[Vec3]) -> f32 {
     }
 }
 
-/// Returns whether a point is in a simplex: replacing any corner by the point keeps the sign of the volume.
+/// Returns whether a point is in a triangle or tetrahedron. The point is inside if replacing any corner by
+/// the point keeps the sign of the volume.
 fn is_in_simplex<D: Dim>(points: &[Vec3], at: Vec3) -> bool {
     let whole = volume::<D>(points);
     (0..=D::N).all(|corner| {
@@ -57,7 +58,7 @@ fn is_in_cell<D: Dim>(corners: &[Vec3], at: Vec3) -> bool {
     })
 }
 
-/// Returns the crumbs embedded in larger pieces, as body index and piece number, and the number of all
+/// Returns the crumbs embedded in larger pieces, as body index and piece number, and the total number of
 /// crumbs.
 fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
     let views: Vec<_> = world
@@ -110,8 +111,9 @@ fn crumbs_inside<D: Dim>(world: &World<D>) -> (Vec<(usize, PieceId)>, usize) {
     (inside, crumbs().count())
 }
 
-/// Runs a world in which a hand follows `goal`, and checks its crumbs. No crumb may stay embedded for more
-/// than `patience` ticks, or be embedded at the end. There must be at least `least` crumbs at the end.
+/// Moves a hand along `goal`, a position [m] as a function of time [s], and checks the crumbs. No crumb may
+/// stay embedded for more than `patience` ticks, or be embedded at the end. There must be at least `least`
+/// crumbs at the end.
 fn check<D: Dim>(
     mut world: World<D>,
     ticks: u16,
@@ -161,8 +163,8 @@ fn weightless<D: Dim>() -> World<D> {
     World::new(settings).unwrap()
 }
 
-/// Runs a world in which a hand presses dust into a body against a wall, grinds back and forth, and retreats.
-/// Checks that no dust stays embedded.
+/// A hand presses dust, a body of many crumbs, into a second body against a wall, grinds back and forth, and
+/// retreats. Checks that no dust stays embedded.
 fn check_grinding<D: Dim>(n: usize, least: usize) {
     let mut world = weightless::<D>();
     let wall = Shape::half_space(-D::Vector::X, vector(1.05, 0.0, 0.0));
@@ -185,7 +187,7 @@ fn check_grinding<D: Dim>(n: usize, least: usize) {
     check(world, 240, 30, least, |seconds| {
         let in_and_out = seconds.min(0.8) - (seconds - 2.2).max(0.0);
         let turn = 2.0 * (seconds - 0.8).clamp(0.0, 1.4);
-        // The hand moves down by 0.15 m and back, twice a second.
+        // The hand moves down by 0.15 m and back up, twice a second.
         let to_and_fro = 0.3 * ((turn - turn.floor() - 0.5).abs() - 0.5);
         vector(-0.55 + 1.25 * in_and_out, 0.5 + to_and_fro, depth)
     });
@@ -216,7 +218,8 @@ fn crumbs_stay_outside_halves_of_torn_disc() {
     });
 }
 
-/// Checks that dust that starts inside a body drifts out slowly, and that momentum is preserved.
+/// Checks that dust, a body of many crumbs that starts inside another body, drifts out slowly and preserves
+/// momentum.
 fn check_way_out<D: Dim>(n: usize) {
     let mut world = World::<D>::new(WorldConfig {
         gravity: D::Vector::ZERO,
@@ -241,8 +244,8 @@ fn check_way_out<D: Dim>(n: usize) {
             let speed = crumb.velocity.length();
             assert!(speed < 1.5, "tick {tick}: {speed} m/s");
         }
-        // Checks the momentum only in the first ticks: later, crumbs outside touch the body, and their slow
-        // contacts are damped.
+        // Checks the momentum only in the first ticks. Later, crumbs outside touch the body, and the extra
+        // drag of slow pieces in contact changes the momentum.
         if tick < 10 {
             let bodies = world.soft_bodies();
             let linear = bodies.map(|(_, body)| body.momentum().linear);
@@ -265,7 +268,8 @@ fn embedded_dust_drifts_out_slowly() {
     check_way_out::<Dim3>(16);
 }
 
-/// Expands a single voxel slightly, and returns the speed of its fastest node [m/s] one second later.
+/// Lets a single voxel vibrate from a slight expansion, and returns the speed of its fastest node after one
+/// second [m/s].
 fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     const WIDE: usize = 32;
     let elasticity = Elasticity {
@@ -283,7 +287,8 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
         ..WorldConfig::default()
     };
     let mut world = World::<D>::new(settings).unwrap();
-    // The grid holds a large block and a single separate voxel, which has the damping of the whole body.
+    // The grid holds a large block and a separate voxel. The separate voxel has the same damping rate as the
+    // block.
     let mut size = [WIDE; 3];
     size[D::N..].fill(1);
     let grid = VoxelGrid::from_fn(size, 1.0 / WIDE as f32, |at| {
@@ -321,7 +326,8 @@ fn crumb_vibration_decays_for_any_material_and_substeps() {
     }
 }
 
-/// Drops a heavy block on a sleeping crumb, and returns the maximum depth of the crumb in the floor [voxels].
+/// Drops a heavy block on a sleeping crumb, and returns the maximum depth to which the crumb sinks into the
+/// floor [voxels].
 fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
     const VOXEL: f32 = 1.0 / 32.0;
     let settings = WorldConfig {

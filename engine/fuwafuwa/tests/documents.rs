@@ -51,7 +51,7 @@ fn documents_name_existing_paths() {
 }
 
 /// In a browser there are no files or paths. The game therefore opens and saves data only through its module
-/// `platform`, by kind and name. The libraries below the game read bytes.
+/// `platform`, which identifies data by kind and name. The libraries below the game receive bytes.
 #[test]
 fn files_are_used_only_in_platform_and_command_line_modules() {
     let edges = [

@@ -1,4 +1,4 @@
-//! Errors: each names its subject, what was expected, and what was given.
+//! Error messages: each names the invalid object or parameter, what was expected, and what was given.
 
 use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, DimVector, Error, Grading, Joint, JointAnchor, Law, Material,

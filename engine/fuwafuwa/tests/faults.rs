@@ -24,8 +24,8 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     SoftBody::new(grid, &[Material::default()]).expect("the material is valid")
 }
 
-/// Regression: a second cut along the same blade released nothing, but reported the released nodes of the
-/// first cut again, with events.
+/// Regression: a second cut along the same blade split no node, but reported the split nodes of the first cut
+/// again, with events.
 fn check_cut_twice<D: Dim>(n: usize, [blade, across]: [Blade<D>; 2]) {
     let mut world = weightless::<D>();
     let id = world.add_soft_body(ball(n));
@@ -39,7 +39,7 @@ fn check_cut_twice<D: Dim>(n: usize, [blade, across]: [Blade<D>; 2]) {
     assert_eq!(told(&world), first);
     assert_eq!(world[id].pieces().list.len(), 2);
     assert_eq!((world.cut(id, &blade).unwrap(), told(&world)), (0, first));
-    // A blade that crosses the first cut releases only nodes that the first cut left.
+    // A blade that crosses the first cut splits only nodes that the first cut did not split.
     assert!(world.cut(id, &across).unwrap() >= points);
     assert_eq!(world.cut(id, &across).unwrap(), 0);
     assert_eq!(world[id].pieces().list.len(), 4);
@@ -56,7 +56,7 @@ fn cut_releases_nothing_along_same_blade() {
     check_cut_twice::<Dim3>(8, [upright, level]);
 }
 
-/// Moves every node of a body to the image of its position.
+/// Moves every node of a body from its position to the position that `to` returns for it.
 fn place(body: &mut SoftBody<Dim3>, to: impl Fn(Vec3) -> Vec3) {
     let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for id in ids {
@@ -65,8 +65,8 @@ fn place(body: &mut SoftBody<Dim3>, to: impl Fn(Vec3) -> Vec3) {
     }
 }
 
-/// Returns the maps of five rotations of the unit cube: half turns about the grid's axes and about a
-/// diagonal, and one of nearly half a turn.
+/// Returns five rotations of the unit cube as functions of a point: half turns about the grid's axes and
+/// about a diagonal, and one rotation by nearly half a turn.
 fn turns() -> [fn(Vec3) -> Vec3; 5] {
     [
         |Vec3 { x, y, z }| Vec3::new(x, 1.0 - y, 1.0 - z),
@@ -84,8 +84,8 @@ fn fastest<D: Dim>(body: &SoftBody<D>) -> f32 {
     speeds.fold(0.0, f32::max)
 }
 
-/// Regression: the iteration for the rotation of an element started at the identity and got stuck at half a
-/// turn. An upside-down ball tore itself into 42 pieces.
+/// Regression: the iteration for the rotation of an element started at the identity and did not converge at
+/// half a turn. A ball placed upside down tore itself into 42 pieces.
 #[test]
 fn body_stays_whole_when_turned_by_half_turn() {
     for turn in turns() {
@@ -100,8 +100,8 @@ fn body_stays_whole_when_turned_by_half_turn() {
     }
 }
 
-/// Regression: for new elements in a rotated body, the iteration for the element's rotation got stuck at half
-/// a turn. A cut through an upside-down body hurled the body about.
+/// Regression: for new elements in a rotated body, the iteration for the element's rotation did not converge
+/// at half a turn. A cut through a body placed upside down hurled the body about.
 #[test]
 fn cut_keeps_turned_body_at_rest() {
     for turn in turns() {
@@ -183,7 +183,7 @@ fn unused_weaker_material_has_no_effect_on_cracks() {
     assert_eq!(run(&[strong, Material::default()]), (0, states));
 }
 
-/// Regression: a non-finite crumb inside another body put that body into quarantine, too.
+/// Regression: a non-finite crumb inside another body put the other body into quarantine, too.
 #[test]
 fn quarantine_spares_ball_around_non_finite_crumb() {
     for nowhere in [f32::NAN, f32::INFINITY, 1e30] {

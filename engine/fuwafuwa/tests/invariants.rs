@@ -1,4 +1,4 @@
-//! Invariants for every shape and every sequence of cuts.
+//! Invariants of the mesh that hold for every shape and every sequence of cuts.
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 use fuwafuwa::Grading;
@@ -54,7 +54,8 @@ fn random_shape<D: Dim>(random: &mut Random, n: i32) -> Option<VoxelGrid<D>> {
     .ok()
 }
 
-/// Splits connections at a few random points or in a whole rectangle of points, as a crack or a knife would.
+/// Splits the connections between voxels at a few random lattice points or in a whole rectangle of points, as
+/// a crack or a knife would.
 fn random_cut<D: Dim>(sharing: &mut Connectivity<D>, random: &mut Random, n: i32) -> Vec<Point> {
     let axis = random.below(D::N as i32) as usize;
     let side = (0..D::CORNERS).fold(0u8, |mask, octant| {
@@ -81,8 +82,8 @@ fn random_cut<D: Dim>(sharing: &mut Connectivity<D>, random: &mut Random, n: i32
     touched
 }
 
-/// Runs `check_one_sequence` for the seeds `0..sequences` on several threads. The size of the body cycles
-/// through `sizes`.
+/// Runs `check_one_sequence` for the seeds `0..sequences` on several threads. The width of the body in voxels
+/// cycles through `sizes`.
 fn check_remodelling<D: Dim>(sequences: u64, sizes: std::ops::Range<i32>) {
     let threads = 4;
     let sizes = &sizes;
@@ -98,7 +99,7 @@ fn check_remodelling<D: Dim>(sequences: u64, sizes: std::ops::Range<i32>) {
     });
 }
 
-/// Cuts a random shape several times. The remodelled mesh must equal one graded from scratch.
+/// Cuts a random shape several times. The remodelled mesh must equal a mesh newly graded from the cut shape.
 fn check_one_sequence<D: Dim>(seed: u64, n: i32) {
     let mut random = Random::new(seed + 1);
     let Some(grid) = random_shape::<D>(&mut random, n) else {
@@ -156,7 +157,7 @@ fn assert_affine_motion_is_inherited<D: Dim>(
 }
 
 /// Patch test: under uniform strain, the default law must leave inner nodes without force. The residual is
-/// relative to stress × area of a voxel's face.
+/// relative to the product of stress and the area of a voxel's face.
 fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
     mesh: &Mesh<D>,
     sharing: &Connectivity<D>,

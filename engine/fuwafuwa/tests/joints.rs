@@ -34,7 +34,7 @@ fn rubber(damping: f32) -> Material {
     }
 }
 
-/// Adds a ball 1 m wide with its centre at `middle`.
+/// Adds a ball 1 m wide with its centre at `middle` [m].
 fn soft<D: Dim>(world: &mut World<D>, middle: D::Vector) -> SoftBodyHandle {
     let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
     let body = SoftBody::new(grid, &[rubber(0.08)]).unwrap();
@@ -54,7 +54,7 @@ fn broken<D: Dim>(world: &World<D>) -> usize {
     world.events().iter().filter(is_break).count()
 }
 
-/// Checks that a pendulum never exceeds its initial energy in a minute, and keeps swinging.
+/// Checks that a pendulum swings for a minute without ever exceeding its initial energy.
 fn no_energy_comes_from<D: Dim>(tie: JointKind) {
     let mut world = world::<D>(-9.81);
     let bob = ball(&mut world, D::Vector::X, 2.0);
@@ -75,15 +75,15 @@ fn no_energy_comes_from<D: Dim>(tie: JointKind) {
         let velocity = rigid.velocity();
         let speed = velocity.linear.to_vec3().length_squared();
         let spin = velocity.angular.to_vec3().length_squared();
-        // Moment of inertia: 2/5 m r² for a ball, m r²/2 for a disc.
+        // Moment of inertia about the centre, as a share of m r²: 2/5 for a ball, 1/2 for a disc.
         let share = if D::N == 2 { 0.5 } else { 0.4 };
         most = most.max(speed + share * 0.01 * spin + 2.0 * 9.81 * y);
         lowest = lowest.min(y);
         assert!((x * x + y * y).sqrt() < 1.02, "{tick}: {x} {y}");
     }
     assert!(lowest < -0.95, "{lowest}");
-    // `most` is twice the highest energy per mass [m²/s²], initially 0. For comparison, the squared speed at
-    // the lowest point is 2 g l = 19.6 m²/s².
+    // `most` is twice the highest energy per mass [m²/s²]; at the start, this energy is 0. For comparison,
+    // the squared speed at the lowest point is 2 g l = 19.6 m²/s².
     assert!(most < 0.2, "{most}");
 }
 
@@ -151,7 +151,8 @@ fn it_follows<D: Dim>() {
         world.step();
         let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
         assert!((held - place).length() < 0.02, "{tick}: {held:?} {place:?}");
-        // The pin keeps its place on the arm, where the mean position of the pinned nodes was at first.
+        // On the arm, the pin stays at the point where the mean position of the pinned nodes was when the pin
+        // was added.
         let away = place - way.apply(first);
         assert!(away.length() < 1e-3, "{tick}: {place:?}");
     }
@@ -177,7 +178,7 @@ fn pin_keeps_two_soft_bodies_together() {
     }
     let [held, place] = world.joint_anchor_positions(pin).unwrap().unwrap();
     assert!((held - place).length() < 0.02);
-    // The pin transmits momentum, but preserves the sum over both bodies.
+    // The pin transfers momentum between the bodies, but preserves the total momentum.
     let mass = world[a].total_mass();
     let [a, b] = [a, b].map(|id| world[id].momentum().linear.x);
     assert!(
@@ -187,8 +188,8 @@ fn pin_keeps_two_soft_bodies_together() {
     assert!(b < -0.3 * f64::from(mass as f32), "{b}");
 }
 
-/// A mass on an undamped spring oscillates with ω² = k/m. The implicit integration damps the oscillation
-/// slowly.
+/// A mass m on an undamped spring of stiffness k oscillates with ω² = k/m. The implicit integration damps the
+/// oscillation slowly.
 #[test]
 fn spring_oscillates_at_natural_frequency() {
     let mut world = world::<Dim3>(0.0);
@@ -222,9 +223,10 @@ fn spring_oscillates_at_natural_frequency() {
     );
 }
 
-/// Checks that a mass of 1 kg hangs at rest from parallel springs, all of them from one point to its centre.
-/// The springs stretch by m g / Σk, and each carries its share k / Σk of the weight. h² k / m is up to 0.4
-/// per spring, so a single solver pass over the springs would be far from the solution.
+/// Checks that a mass m = 1 kg hangs at rest from parallel springs between one fixed point and its centre.
+/// The springs stretch by m g / Σk, and each carries the share k / Σk of the weight. With the substep length
+/// h, h² k / m is up to 0.4 per spring, so a single solver pass over the springs would be far from the
+/// solution.
 fn parallel_springs_hold_a_mass<D: Dim>() {
     let mut world = world::<D>(-9.81);
     let bob = ball(&mut world, D::Vector::ZERO, 1.0);
@@ -264,7 +266,7 @@ fn parallel_springs_stretch_and_share_load_by_stiffness() {
     parallel_springs_hold_a_mass::<Dim3>();
 }
 
-/// Checks a mass between four springs, two on each side: it oscillates along their axis with ω² = Σk/m.
+/// Checks that a mass m between four springs, two on each side, oscillates along their axis with ω² = Σk/m.
 fn mass_between_springs_oscillates<D: Dim>() {
     let mut world = world::<D>(0.0);
     let bob = ball(&mut world, vector(0.1, 0.0, 0.0), 2.0);
@@ -306,7 +308,8 @@ fn mass_between_springs_oscillates_at_natural_frequency() {
     mass_between_springs_oscillates::<Dim3>();
 }
 
-/// Two equal stiff springs carry a weight of 39.2 N, 19.6 N each. They break at a limit below that.
+/// Two equal stiff springs carry a weight of 39.2 N, so each carries 19.6 N. Both break if their breaking
+/// force is below 19.6 N.
 #[test]
 fn parallel_springs_break_above_their_share_of_the_load() {
     for (limit, holds) in [(22.0, true), (18.0, false)] {
@@ -378,7 +381,8 @@ fn chain_of_ten_ropes_keeps_length() {
     assert!(lowest < -2.3, "{lowest}");
 }
 
-/// A body that is up to 20 times as heavy as a link hangs from a vertical chain of pins, and nothing moves.
+/// Checks that a vertical chain of pinned links hangs at rest, also if the lowest body is 20 times as heavy
+/// as a link.
 #[test]
 fn chain_of_pins_stays_at_rest_under_load() {
     for heavy in [1.0, 10.0, 20.0] {
@@ -443,7 +447,7 @@ fn joint_breaks_when_body_is_removed() {
     assert!(world.remove(joint).is_err());
 }
 
-/// A pin keeps its voxels while the body tears around them.
+/// A pin stays attached to its voxels while the rest of the body crumbles.
 #[test]
 fn pin_keeps_voxels_while_body_crumbles() {
     let mut world = world::<Dim3>(-9.81);

@@ -1,4 +1,4 @@
-//! Kinematic and coupled rigid bodies: rest on them, targets, knives.
+//! Kinematic and coupled rigid bodies: soft bodies at rest on them, targets, knives.
 
 use fuwafuwa::{
     Dim, Dim2, Dim3, DimVector, Error, Event, Knife, Material, MotionType, RigidBody, Shape,

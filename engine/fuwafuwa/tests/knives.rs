@@ -19,7 +19,7 @@ fn weightless<D: Dim>() -> World<D> {
     World::new(settings).unwrap()
 }
 
-/// Adds a block centred above the origin and fixed at its bottom.
+/// Adds a block with its bottom centred on the origin and fixed.
 fn block<D: Dim>(
     world: &mut World<D>,
     size: [usize; 3],
@@ -49,7 +49,8 @@ fn rubber() -> Material {
     }
 }
 
-/// Adds a kinematic hand with a knife that points down. The cutting edge lies along the third axis.
+/// Adds a kinematic hand with a knife that points down. The cutting edge has the half length `half` [m] and
+/// lies along the third axis.
 fn knife<D: Dim>(
     world: &mut World<D>,
     at: D::Vector,
@@ -68,7 +69,7 @@ fn height<D: Dim>(world: &World<D>, body: RigidBodyHandle) -> f32 {
     world.rigid_body(body).unwrap().position()[1]
 }
 
-/// Moves the knife to a position at a speed [m/s], and calls `each` after every tick.
+/// Moves the hand that holds a knife to a position [m] at a speed [m/s], and calls `each` after every tick.
 fn go<D: Dim>(
     world: &mut World<D>,
     holder: RigidBodyHandle,
@@ -105,8 +106,8 @@ fn validated<D: Dim>(world: &World<D>, body: SoftBodyHandle) {
         .unwrap();
 }
 
-/// Returns the mean upward force [N] on a knife that cuts from above into a slab, and the area and work of
-/// the cut.
+/// Lets a knife cut from above into a slab. Returns the mean upward force on the knife [N], and the area [m²]
+/// and the work [J] of the cut.
 fn force_in_slab<D: Dim>(
     size: [usize; 3],
     voxel: f32,
@@ -116,7 +117,7 @@ fn force_in_slab<D: Dim>(
     let mut world = weightless::<D>();
     let body = block(&mut world, size, voxel, Material::default());
     let top = size[1] as f32 * voxel;
-    // The knife moves between two lattice planes of the voxels.
+    // The knife moves in parallel to the lattice planes of the voxels, 0.13 voxel widths beside one of them.
     let (holder, id) = knife(
         &mut world,
         vector(0.13 * voxel, top + 0.01, 0.0),
@@ -176,7 +177,7 @@ fn knife_force_is_fracture_energy_times_thickness() {
     );
 }
 
-/// Returns the depth to which a knife presses into a block before it cuts [m].
+/// Returns how deep a knife presses into a block before the first cut [m].
 fn pressed_before<D: Dim>(size: [usize; 3], radius: f32) -> f32 {
     let voxel = 0.02;
     let mut world = weightless::<D>();
@@ -227,7 +228,7 @@ fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
     let (holder, id) = knife(&mut world, start, 0.15, 0.0);
     let (mut area, mut most) = (0.0, 0.0f32);
     let end = vector(left + slant, -0.02, 0.0);
-    // Turns the blade to point in the direction of motion.
+    // Rotates the knife so that its blade points in the direction of motion.
     let turned = Rotation::in_plane(libm::atanf(slant / (top + 0.04)));
     world.set_target_rotation(holder, turned).unwrap();
     go(&mut world, holder, end, 0.5, |world| area += cut(world)[0]);
@@ -252,7 +253,7 @@ fn goes_through<D: Dim>(size: [usize; 3], slant: f32) {
         "{area} m² of {}",
         long * depth
     );
-    // Moves the knife back and forth through the finished cut, where nothing is left to cut.
+    // Moves the knife back and forth through the finished cut; it must cut almost no further area.
     let mut again = 0.0;
     go(&mut world, holder, start, 0.5, |world| {
         again += cut(world)[0]
@@ -275,7 +276,8 @@ fn knife_cuts_block_in_two_only_once() {
 
 #[test]
 fn coupled_knife_cuts_only_with_enough_force() {
-    // A cut takes 8 J/m² × 0.16 m of width = 1.28 N, which lies between the two limits of the coupling force.
+    // The force to advance a cut is 8 J/m² × 0.16 m of width = 1.28 N. It lies between the two limits of the
+    // coupling force.
     for (pull, cuts) in [(0.8, false), (2.0, true)] {
         let mut world = weightless::<Dim3>();
         let body = block(&mut world, [16, 12, 8], 0.02, Material::default());

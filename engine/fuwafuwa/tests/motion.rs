@@ -1,4 +1,5 @@
-//! Moving bodies: forces compared with the reference law, momentum, angular momentum and energy.
+//! Moving bodies: forces compared with the reference implementation of each law, momentum, angular momentum
+//! and energy.
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 use fuwafuwa::inspect::forces;
@@ -42,8 +43,8 @@ fn momentum<D: Dim>(body: &SoftBody<D>) -> (DVec3, DVec3) {
     (linear, angular)
 }
 
-/// Checks the forces on a bent, rotated body: the element batches compute them in single precision, and the
-/// law in double precision.
+/// Checks the forces on a bent, rotated body. The element batches of the body, in single precision, must
+/// agree with the reference implementation of the law in double precision.
 fn check_forces_against_the_law<D: Dim>(law: Law) {
     let mut body = ball::<D>(16, law);
     arrange(&mut body, |Vec3 { x, y, z }| {
@@ -55,7 +56,7 @@ fn check_forces_against_the_law<D: Dim>(law: Law) {
         );
         (turned, Vec3::ZERO)
     });
-    // A substep of zero length computes the forces without moving nodes. Several of them let the element
+    // A substep of zero length computes the forces without moving nodes. Repeated substeps let the element
     // rotations converge.
     for _ in 0..8 {
         body.advance(0.0, D::Vector::ZERO);
@@ -103,7 +104,7 @@ fn element_batches_match_reference_law() {
     }
 }
 
-/// Checks that a free ball that spins at 5 rad/s keeps its angular momentum for five seconds.
+/// Checks that a free ball with an angular velocity of 5 rad/s keeps its angular momentum for five seconds.
 #[test]
 fn spinning_ball_preserves_angular_momentum() {
     let mut body = ball::<Dim3>(12, Law::CorotationalVem);

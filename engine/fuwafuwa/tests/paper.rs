@@ -27,8 +27,8 @@ fn mesh_of<D: Dim>(grid: &VoxelGrid<D>, grading: Grading) -> Mesh<D> {
 #[test]
 fn element_count_grows_with_surface() {
     let count = |n| graded(&VoxelGrid::<Dim3>::ball(n, 1.0).unwrap()).element_count();
-    // An independent prototype, which does not limit elements to an eighth of the body's width, has 5,048 and
-    // 12,368 elements.
+    // For comparison, an independent prototype has 5,048 and 12,368 elements. The prototype does not limit
+    // elements to an eighth of the body's width.
     assert_eq!((count(32), count(48)), (5_048, 12_520));
     let disc = |n| graded(&VoxelGrid::<Dim2>::ball(n, 1.0).unwrap()).element_count() as f64;
     let growth = disc(128) / disc(64);
@@ -38,7 +38,7 @@ fn element_count_grows_with_surface() {
     );
 }
 
-/// Elements stay small relative to a body of any size, because their mass is concentrated in their nodes.
+/// Elements are at most an eighth of the body wide: wider ones would concentrate too much mass in single nodes.
 #[test]
 fn element_width_is_at_most_an_eighth_of_body() {
     for n in [32, 64, 100, 256] {
@@ -49,8 +49,8 @@ fn element_width_is_at_most_an_eighth_of_body() {
     }
 }
 
-/// Paper, §3.1: if each element counts its own vertices, n³ voxels have 8n³ vertices. With elements of two
-/// voxels at the surface and larger ones inside, about 26n² vertices remain.
+/// Paper, §3.1: if vertices are not shared between elements, n³ voxels have 8n³ vertices. With elements two
+/// voxels wide at the surface and wider ones inside, about 26n² vertices remain.
 #[test]
 fn vertex_count_falls_from_8n3_to_26n2_when_graded() {
     let count = |n, grading| {
@@ -96,7 +96,7 @@ fn disc_is_fine_at_rim_and_coarse_inside() {
 }
 
 /// Paper, §3.1: for a regular polyhedron, the paper's force equals that of a linear element with the given
-/// Young's modulus and no lateral contraction. A stretched cube pulls with Y × strain × area.
+/// Young's modulus Y and Poisson's ratio 0. A stretched cube pulls with the force Y × strain × area.
 #[test]
 fn laws_reproduce_youngs_modulus_on_cube() {
     fn check<D: Dim>() {
@@ -127,8 +127,8 @@ fn laws_reproduce_youngs_modulus_on_cube() {
     check::<Dim3>();
 }
 
-/// Paper, §3.1: swapped vertices return to their places, because the force takes the element's rotation into
-/// account.
+/// Paper, §3.1: two vertices that have swapped positions are pulled back, because the force takes the
+/// element's rotation into account.
 #[test]
 fn paper_law_pulls_swapped_nodes_back() {
     let stencil = ElementClass::<Dim2>::new(15, cell_corners::<Dim2>()).unwrap();

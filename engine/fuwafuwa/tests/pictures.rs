@@ -1,7 +1,8 @@
-//! Meshes as text pictures, which show the gradation and the remodelling.
+//! Meshes as text pictures, which show how elements are graded and remodelled.
 //!
-//! Input: `#` is a voxel. Output: the level of the element that owns the voxel. A letter in place of the
-//! digit (`b` for 1, `c` for 2) marks an element that has lost children and is no longer a whole cell.
+//! In the input, `#` is a voxel. In the output, a digit is the level of the element that contains the voxel.
+//! A letter instead of a digit (`b` for level 1, `c` for level 2) marks an element that has lost children, so
+//! that it no longer fills its cell.
 
 use fuwafuwa::Dim;
 use fuwafuwa::inspect::Element;
@@ -33,8 +34,8 @@ fn picture_of(body: &SoftBody<Dim2>) -> Vec<String> {
         .collect()
 }
 
-/// Grades the voxels, cuts along the segments in order, and compares both meshes with the expected text
-/// pictures.
+/// Grades the voxels, cuts along the segments in order, and compares the graded and the remodelled mesh with
+/// the expected text pictures.
 fn check(voxels: &[&str], graded: &[&str], cuts: &[([f32; 2], [f32; 2])], remodelled: &[&str]) {
     let mut body = body_of(voxels);
     let found = picture_of(&body);

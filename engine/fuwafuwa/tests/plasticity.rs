@@ -31,8 +31,9 @@ fn weightless<D: Dim>() -> WorldConfig<D> {
     }
 }
 
-/// Presses a block between two plates to a fraction `share` of its height, and releases it. Returns the final
-/// height, width and volume of the block, relative to the initial ones.
+/// Presses a block between two plates to the fraction `share` of its height, and lifts the upper plate.
+/// Returns the height, width and volume of the block afterwards, relative to the initial ones, with the world
+/// and the body.
 fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftBodyHandle) {
     let mut world = World::<D>::new(weightless()).unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::cube(8, 1.0).unwrap(), &[material]).unwrap();
@@ -112,7 +113,8 @@ fn node_states<D: Dim>(world: &World<D>) -> Vec<(D::Vector, D::Vector, f32)> {
     bodies.flat_map(|(_, body)| states(body)).collect()
 }
 
-/// Checks that a yield strain that is never reached gives bit-identical results to an infinite one.
+/// Checks that a yield strain that is never reached gives results bit-identical to those of an infinite yield
+/// strain.
 fn check_same_bits<D: Dim>() {
     let run = |material: Material| {
         let mut world = World::<D>::new(WorldConfig::default()).unwrap();
@@ -150,8 +152,8 @@ fn unreached_yield_strain_gives_same_bits_as_infinite() {
     check_same_bits::<Dim3>();
 }
 
-/// Moves the nodes of a cube at random, and compares the forces and the plastic flow of the element batches
-/// with the reference in double precision.
+/// Moves the nodes of a cube at random. The forces and the plastic flow of the element batches must agree
+/// with the reference implementation in double precision.
 fn check_reference<D: Dim>(seed: u32) -> f32 {
     let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(9);
     let mut random = || {
@@ -218,8 +220,8 @@ fn fast_path_matches_reference_plasticity() {
     }
 }
 
-/// Checks a clay ball that expands, spins and flows: its momentum and angular momentum are preserved, and its
-/// energy never grows.
+/// Checks a clay ball that expands, spins and deforms plastically: its momentum and angular momentum are
+/// preserved, and its energy never grows.
 fn check_kept<D: Dim>() {
     let clay = Material {
         damping: 0.0,
@@ -280,8 +282,8 @@ fn plastic_flow_preserves_momentum_and_dissipates_energy() {
     check_kept::<Dim3>();
 }
 
-/// Checks that new elements inherit the plastic strain of the old ones when a deformed body is cut, and that
-/// snapshots contain it.
+/// Checks that new elements inherit the plastic strain of the elements that they replace when a deformed body
+/// is cut. A snapshot must preserve the plastic strain, too.
 fn check_inherited<D: Blades>() {
     let (_, mut world, id) = pressed::<D>(Material::clay(), 0.6);
     let mean = |world: &World<D>| {
@@ -333,7 +335,7 @@ fn plastic_strain_survives_cut_and_snapshot() {
     check_inherited::<Dim3>();
 }
 
-/// Strikes clay with a hand from random directions, and checks that the state stays bounded.
+/// Strikes a clay ball with a hand from random directions, and checks that the state stays bounded.
 fn check_abuse<D: Dim>(seed: u32) {
     let mut state = seed.wrapping_mul(2_654_435_761).wrapping_add(5);
     let mut random = || {

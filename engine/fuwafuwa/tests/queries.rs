@@ -22,7 +22,8 @@ fn weightless<D: Dim>() -> WorldConfig<D> {
     }
 }
 
-/// Returns a ball of two materials centred at the origin; material 2 fills a radius of 0.25 m.
+/// Returns a ball of two materials centred at the origin. Material 2 fills the inner part, a ball of 0.25 m
+/// radius.
 fn ball<D: Dim>(n: usize) -> SoftBody<D> {
     let half = Vec3::new(0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 });
     let apart = |at: Vec3| (at - half).length();
@@ -79,8 +80,8 @@ fn check_rays<D: Dim>() {
         let from = direction * 5.0;
         let inwards = -direction;
         let found = soft_hit(from, inwards, 10.0).unwrap();
-        // The surface consists of voxel faces, which deviate from the sphere of 0.5 m radius by up to two
-        // voxel widths.
+        // The surface consists of the faces of voxels, which deviate from the sphere of 0.5 m radius by up to
+        // two voxel widths.
         assert!(
             (found.distance - 4.5).abs() < 2.0 * voxel,
             "{direction:?} {found:?}"
@@ -186,7 +187,8 @@ fn check_places<D: Dim>() {
                 _ => 0,
             };
             let at = direction * far;
-            // At the boundary of materials, elements are of level 0, so each has a single material.
+            // Elements at the boundary between both materials are single voxels (level 0), so each has a
+            // single material.
             assert_eq!(material(at), expect, "{at:?}");
         }
     }
@@ -219,7 +221,7 @@ fn check_overlaps<D: Blades>() {
     assert_eq!(count(&world, probe(0.0, 2.9)), [2, 1], "as far as the bar");
     let needle = Shape::capsule(vector(-3.0, 0.013, 0.0), vector(2.0, 0.013, 0.0), 0.001);
     assert_eq!(count(&world, needle), [0, 1], "through it");
-    // After a cut in two, the body is listed as two pieces.
+    // After a cut in two, the overlap query must list two pieces of the body.
     let blade = D::blade(Vec3::new(0.0, -1.0, -1.0), Vec3::Y * 2.0, Vec3::Z * 2.0);
     world.cut(body, &blade).unwrap();
     assert_eq!(count(&world, probe(0.0, 0.3)), [0, 2], "across the cut");
@@ -232,7 +234,7 @@ fn overlaps_returns_pieces_and_rigid_bodies() {
 }
 
 /// Returns a world with objects in a row along the first axis: a sensor, two equal boxes and a soft cube. The
-/// second box has other layers.
+/// second box is in a different collision layer.
 fn row<D: Dim>() -> (World<D>, [RigidBodyHandle; 3], SoftBodyHandle) {
     let mut world = World::new(weightless()).unwrap();
     let cuboid = |x| Shape::cuboid(D::Vector::splat(0.5)).translated(vector(x, 0.0, 0.0));
@@ -256,8 +258,7 @@ fn check_filters<D: Blades>() {
     let ray = Ray::new(vector(-5.0, 0.1, 0.0), D::Vector::X);
     let hit = |world: &World<D>, filter: QueryFilter<'_>| {
         let hit = world.ray_cast(ray, 100.0, filter.clone());
-        // If the ray hits an object through the filter, the other queries must find the same object with that
-        // filter.
+        // If the ray hits an object, all other queries with this filter must find the same object.
         if let Some(hit) = hit {
             let behind = vector(hit.point[0] + 0.1, 0.1, 0.0);
             let probe = Shape::ball(0.05).translated(behind);
@@ -284,7 +285,7 @@ fn check_filters<D: Blades>() {
     let both = all.clone().excluding(first).excluding(second);
     assert_eq!(hit(&world, both.clone()), Some(piece(PieceId(0))));
     assert_eq!(hit(&world, both.excluding(cube)), None);
-    // The layers of query and object must match in both directions.
+    // A query finds an object only if each of them collides with a layer of the other.
     let only_second = Layers {
         memberships: 0b01,
         filters: 0b10,
@@ -359,8 +360,8 @@ fn ray_prefers_the_lowest_object_among_equally_distant_ones() {
     );
 }
 
-/// Returns the distance along a ray with a unit direction to an exposed face, by a formula in double
-/// precision that shares nothing with the engine.
+/// Returns the distance along a ray with a unit direction to an exposed face. The formula is in double
+/// precision and shares no code with the engine.
 fn distance_to<D: Dim>(corners: [Vec3; 4], origin: Vec3, direction: Vec3) -> Option<f64> {
     let (origin, direction) = (origin.as_dvec3(), direction.as_dvec3());
     let volume = |a: DVec3, b: DVec3, c: DVec3| a.dot(b.cross(c));
@@ -376,7 +377,8 @@ fn distance_to<D: Dim>(corners: [Vec3; 4], origin: Vec3, direction: Vec3) -> Opt
     };
     let [a, b, c, d] = corners.map(Vec3::as_dvec3);
     if D::N == 2 {
-        // In 2D, the face is extended along the third axis to a strip, which every ray in the plane can meet.
+        // In 2D, the face is a segment. It is extended along the third axis to a strip, so that the formula
+        // for triangles applies.
         let (up, down) = (|at: DVec3| at.with_z(9.0), |at: DVec3| at.with_z(-9.0));
         let halves = [
             triangle(down(a), down(b), up(b)),
@@ -408,8 +410,8 @@ fn answers<D: Dim>(world: &World<D>) -> Answers<D> {
     (hits, overlaps)
 }
 
-/// Checks queries in two ways: all results equal those of a clone, which has no search trees yet, and ray
-/// casts equal brute force over all exposed faces.
+/// Checks queries in two ways. All results must equal those of a cloned world, which has no search trees yet,
+/// and ray casts must equal brute force over all exposed faces.
 fn check_cache<D: Dim>(world: &World<D>, step: &str) {
     let known = answers(world);
     assert_eq!(known, answers(&world.clone()), "{step}");

@@ -1,4 +1,4 @@
-//! Removal of pieces from a world: the rest is unaffected.
+//! Removal of pieces from a world: all other objects are unaffected.
 #![cfg(feature = "serde")]
 
 use fuwafuwa::inspect::CellHierarchy;
@@ -30,8 +30,7 @@ fn random(seed: &mut u32, below: usize) -> usize {
     (*seed >> 8) as usize % below
 }
 
-/// Checks that the mesh of each body equals one graded from scratch, and that a snapshot of the world
-/// restores it.
+/// Checks that the mesh of each body equals a newly graded mesh, and that a snapshot restores the world.
 fn check_whole<D: Dim>(world: &World<D>, what: &str) {
     for (_, body) in world.soft_bodies() {
         let (grid, sharing) = (body.grid(), body.connectivity());
@@ -62,7 +61,7 @@ fn random_blade<D: Blades>(seed: &mut u32) -> Blade<D> {
     D::blade(corner, first, Vec3::Z * 5.0)
 }
 
-/// Cuts, tears, steps and removes pieces in random order, with checks after each change. Returns the number
+/// Cuts, splits, steps and removes pieces in random order, with checks after each change. Returns the number
 /// of removed pieces.
 fn check_history<D: Blades>(seed: u32, n: usize) -> usize {
     let mut seed_of = seed.wrapping_mul(2_654_435_761).wrapping_add(17);
@@ -142,7 +141,7 @@ fn removal_leaves_mesh_as_graded_from_scratch() {
     assert!(solid.sum::<usize>() > 10, "too few pieces were removed");
 }
 
-/// Returns a world with a cube that is cut into two halves side by side.
+/// Returns a world with a cube that is cut into two halves, side by side.
 fn halves<D: Blades>(settings: WorldConfig<D>) -> (World<D>, SoftBodyHandle) {
     let mut world = World::new(settings).unwrap();
     let cube = VoxelGrid::cube(8, 1.0).unwrap();
@@ -207,7 +206,8 @@ fn remove_piece_preserves_state_of_other_pieces() {
     check_rest_untouched::<Dim3>();
 }
 
-/// The removal of one half changes neither the forces, nor the damping, nor the strength of the other half.
+/// Checks that the removal of one half changes neither the forces, nor the damping, nor the strength of the
+/// other half.
 #[test]
 fn remove_piece_has_no_effect_on_vibration_of_rest() {
     let (mut world, cube) = halves::<Dim2>(weightless());
@@ -256,7 +256,7 @@ fn check_leaning<D: Blades>() {
     let below = world.add_soft_body(cube(8, 0.8).translated(D::Vector::ZERO));
     let blade = D::blade(Vec3::new(0.4, -1.0, -1.0), Vec3::Y * 3.0, Vec3::Z * 3.0);
     world.cut(below, &blade).unwrap();
-    // Three small cubes: one on each half, and one elsewhere on the floor.
+    // Three small cubes: one on each half of the cut cube, and one elsewhere on the floor.
     let on_left = world.add_soft_body(cube(3, 0.3).translated(vector(0.05, 0.82, 0.2)));
     let on_right = world.add_soft_body(cube(3, 0.3).translated(vector(0.45, 0.82, 0.2)));
     let far = world.add_soft_body(cube(3, 0.3).translated(vector(5.0, 0.01, 0.0)));
@@ -264,8 +264,8 @@ fn check_leaning<D: Blades>() {
         let mut bodies = world.soft_bodies();
         bodies.all(|(_, body)| body.pieces().list.iter().all(|piece| piece.asleep))
     };
-    // The halves may take long to settle against each other. They are put to sleep by hand, because only
-    // their support for the cubes matters.
+    // The halves may take long to settle against each other, so the test puts all bodies to sleep by a method
+    // call.
     (0..40).for_each(|_| _ = world.step());
     for id in [below, on_left, on_right, far] {
         world.put_to_sleep(id).unwrap();
@@ -290,8 +290,8 @@ fn check_leaning<D: Blades>() {
         !asleep(&world, on_right, 0),
         "the cube on the removed half must wake"
     );
-    // The remaining half touched the removed one, so it wakes, and so does the cube on it. The cube elsewhere
-    // sleeps on.
+    // The remaining half touched the removed half, so it wakes, and so does the small cube on it. The cube
+    // elsewhere stays asleep.
     assert!(!asleep(&world, on_left, 0) && asleep(&world, far, 0));
     let woken = |event: &Event<D>| matches!(event, Event::WokeUp { body, .. } if *body == on_right);
     assert!(world.events().iter().any(woken));
@@ -378,7 +378,7 @@ fn check_last<D: Blades>() {
     );
     assert!(world.remove_piece(cube, PieceId(1)).is_err());
     world.step();
-    // Another body can take the slot of the removed one, but the old handle stays stale.
+    // Another body can take the arena slot of the removed body, but the old handle stays stale.
     let ball = SoftBody::new(VoxelGrid::ball(6, 1.0).unwrap(), &[Material::default()]).unwrap();
     let ball = world.add_soft_body(ball);
     (0..30).for_each(|_| _ = world.step());

@@ -43,7 +43,7 @@ fn ball<D: Dim>(centre: D::Vector) -> Shape<D> {
     Shape::ball(0.3).translated(centre)
 }
 
-/// Returns the upward normal of a slope that falls to the right at an angle [rad].
+/// Returns the upward unit normal of a slope that descends to the right at an angle [rad].
 fn upright<V: DimVector>(angle: f32) -> V {
     Rotation::in_plane(-angle).apply(V::Y)
 }
@@ -52,7 +52,8 @@ fn speed<D: Dim>(rigid: RigidBodyRef<'_, D>) -> f32 {
     rigid.velocity().linear.length()
 }
 
-/// Checks that each shape, dropped in a tilted pose, settles on the floor in its lowest position.
+/// Checks that each shape, dropped in a tilted pose, comes to rest on the floor with its centre at the lowest
+/// possible height.
 fn all_come_to_rest<D: Dim>() {
     let turned = match D::N {
         2 => Rotation::in_plane(0.5),
@@ -118,8 +119,8 @@ fn tower_of_ten_stands_and_sleeps() {
     a_tower_stands::<Dim3>();
 }
 
-/// Checks two sleeping towers when the foot of one is removed. Each tower is a fixed foot, a box, a soft body
-/// and another box.
+/// Checks that of two sleeping towers, only the one whose foot is removed falls. Each tower is a fixed foot,
+/// a box, a soft body and another box.
 fn one_of_two_towers_falls<D: Dim>() {
     let mut world = floored::<D>();
     let mut material = Material::default();
@@ -203,8 +204,8 @@ fn friction_holds_box_only_below_friction_angle() {
     for (angle, holds) in [(0.3f32, true), (0.6, false)] {
         let mut world = world::<Dim3>(-9.81);
         let normal: Vec3 = upright(angle);
-        // The friction coefficient is 0.5: the box rests at the angle 0.3 rad (tangent 0.31) and slides at 0.6 rad
-        // (tangent 0.68).
+        // A box rests if the tangent of the slope angle is below the friction coefficient 0.5, and slides if
+        // it is above. The angles 0.3 rad and 0.6 rad have the tangents 0.31 and 0.68.
         let slope = Shape::half_space(normal, Vec3::ZERO);
         world
             .add_rigid_body(RigidBody::fixed(slope).with_friction(0.5))
@@ -220,8 +221,8 @@ fn friction_holds_box_only_below_friction_angle() {
         }
         let rigid = world.rigid_body(id).unwrap();
         let way = rigid.position()[0] - start[0];
-        // Horizontal distance of the box after t = 2 s, if it slides with the acceleration g (sin α − 0.5 cos
-        // α) along the slope.
+        // Horizontal distance that a sliding box covers in t = 2 s. It slides along the slope with the
+        // acceleration g (sin α − 0.5 cos α).
         let along = 9.81 * (normal[0] - 0.5 * normal[1]) * 2.0 * normal[1];
         let expected = if holds { 0.0 } else { along };
         assert!(
@@ -295,7 +296,8 @@ fn collision_preserves_linear_momentum() {
     assert!(world.rigid_body(ids[1]).unwrap().velocity().angular != Vec3::ZERO);
 }
 
-/// Checks that a rigid box sinks a little into a soft body and settles, and that neither is pushed away.
+/// Checks that a rigid box on a soft body sinks in a little and comes to rest, and that neither body is
+/// pushed away.
 fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
     let mut world = floored::<D>();
     let grid = VoxelGrid::<D>::cube(12, 1.0).unwrap();

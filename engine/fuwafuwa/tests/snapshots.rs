@@ -1,4 +1,4 @@
-//! Snapshots: a loaded world continues with the same bits.
+//! Snapshots: a loaded world continues bit-identically to the saved world.
 #![cfg(feature = "serde")]
 
 use fuwafuwa::inspect::Hash;
@@ -134,7 +134,8 @@ fn loaded_world_continues_with_same_bits_with_joints_and_sensors() {
     check_tied_resumes::<Dim3>();
 }
 
-/// Checks that a loaded world continues with the same bits while a knife cuts through a falling ball.
+/// Checks that a world that is saved and loaded while a knife cuts through a falling ball continues
+/// bit-identically.
 fn check_cut_resumes<D: Dim>() {
     let mut world = torn_world::<D>(14);
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
@@ -174,8 +175,8 @@ fn loaded_world_continues_with_same_bits_during_cut() {
     check_cut_resumes::<Dim3>();
 }
 
-/// Checks that a loaded world continues with the same bits. A hand moves through crumbs, of which some sleep,
-/// and another body is cut.
+/// Checks that a saved and loaded world continues bit-identically while a hand moves through crumbs, some of
+/// them asleep, and another body is cut.
 fn check_crumbs_resume<D: Blades>(n: usize) {
     let mut world = torn_world::<D>(2 * n);
     let ball = world.nth_soft_body(0).unwrap();
@@ -216,8 +217,8 @@ fn loaded_world_continues_with_same_bits_with_sleeping_pieces() {
     check_crumbs_resume::<Dim3>(4);
 }
 
-/// Checks snapshots of a world with bodies in every state: torn, fixed, moved, quarantined, asleep or awake
-/// again.
+/// Checks snapshots of a world with bodies in every state: torn, fixed, moved by the program, quarantined,
+/// asleep, and woken.
 fn check_any_state<D: Dim>(n: usize) {
     let mut world = torn_world::<D>(n);
     let nowhere = VoxelGrid::ball(4, 0.2).unwrap();
@@ -293,8 +294,8 @@ fn load_rejects_damaged_snapshot() {
     }
 }
 
-/// Loading a snapshot that was altered and given a valid checksum must not panic or hang. Lists of cells or
-/// nodes could be cyclic, and ids could be out of range.
+/// Loading a snapshot that was altered and given a valid checksum must not panic or hang. For example, lists
+/// of cells or nodes could be cyclic, and ids could be out of range.
 #[test]
 fn load_survives_altered_state_with_valid_checksum() {
     let bytes = save(&torn_world::<Dim2>(6));
@@ -353,7 +354,7 @@ fn load_rejects_node_off_plane_or_non_finite() {
     };
     for axis in 0..4 {
         for wrong in [f32::NAN, f32::INFINITY, 0.5] {
-            // Skips changes within the plane to finite numbers, because they give valid positions.
+            // Skips finite values of the coordinates within the plane, because they give valid positions.
             if axis < 2 && wrong.is_finite() {
                 continue;
             }
@@ -368,7 +369,8 @@ fn load_rejects_node_off_plane_or_non_finite() {
     assert!(refused > 20, "{refused}");
 }
 
-/// The world changes between two ticks: one body is cut, another removed, and a third added in its slot.
+/// The world changes between two ticks: one body is cut, another body is removed, and a third body takes its
+/// arena slot.
 #[test]
 fn loaded_world_continues_with_same_bits_after_changes() {
     let ball = |x: f32| {
@@ -424,8 +426,8 @@ fn loaded_world_continues_with_same_bits_after_changes() {
     }
 }
 
-/// Returns a world with a tearing body, bodies in contact, a sleeping body, a quarantined one and a free
-/// slot.
+/// Returns a world with a tearing body, bodies in contact, a sleeping body, a quarantined body and a free
+/// arena slot.
 fn full_of_all<D: Dim>(n: usize) -> World<D> {
     let mut world = torn_world::<D>(n);
     let small = |at: D::Vector| {
@@ -445,8 +447,8 @@ fn full_of_all<D: Dim>(n: usize) -> World<D> {
     world
 }
 
-/// Random number generator that changes a few bytes of a snapshot. Most changed bytes belong to
-/// single-precision numbers, where the last byte has the largest effect.
+/// Random changes to a few bytes of a snapshot: flipped bits, replaced, removed and inserted bytes, and
+/// unusual floating-point numbers.
 struct Changer(u32);
 
 impl Changer {
@@ -474,8 +476,8 @@ impl Changer {
     }
 }
 
-/// Checks that altered snapshots are rejected or can be stepped, and returns the number of those that were
-/// stepped.
+/// Checks that each altered snapshot is rejected or can be stepped. Returns the number of snapshots that
+/// could be stepped.
 fn check_changed<D: Dim>(n: usize, variants: u32) -> u32 {
     let bytes = save(&full_of_all::<D>(n));
     let (header, state) = bytes.split_at(17);
@@ -505,7 +507,7 @@ fn check_changed<D: Dim>(n: usize, variants: u32) -> u32 {
     stepped
 }
 
-/// Loading must not reserve memory for the stated length of a list before the entries are read.
+/// Loading must not reserve memory for the length that a list states before the entries are read.
 #[test]
 fn load_reserves_no_memory_for_stated_length() {
     let bytes = save(&full_of_all::<Dim2>(6));

@@ -1,8 +1,8 @@
 //! The hash of a world covers every number that a snapshot contains.
 //!
-//! A serialiser writes the world as snapshots do, and records the position of each number, flag, variant,
-//! option and list. Then each of them is changed alone. The changed snapshot must be refused, or give a world
-//! with another hash.
+//! A serialiser writes the world in the format of snapshots, and records the position of each number, flag,
+//! variant, option and list. Then each of these values is changed alone. The changed snapshot must be
+//! rejected, or load as a world with another hash.
 #![cfg(feature = "serde")]
 
 use fuwafuwa::inspect::Hash;
@@ -24,7 +24,7 @@ fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
     V::from_vec3(Vec3::new(x, y, z))
 }
 
-/// Stored values that do not change the hash, given by the end of their path, with the reason.
+/// Stored values that do not change the hash. Each entry is the end of the value's path, and the reason.
 const WITHOUT_EFFECT: [(&str, &str); 2] = [
     (
         "impulse.dragged.3",
@@ -36,7 +36,7 @@ const WITHOUT_EFFECT: [(&str, &str); 2] = [
     ),
 ];
 
-/// Names of the items of a tuple or an array in the path of a stored value.
+/// Names that stand for the items of a tuple or an array in the path of a stored value.
 const INDICES: [&str; 9] = ["0", "1", "2", "3", "4", "5", "6", "7", "8"];
 
 /// Stored value of a world: its path, its position in the bytes of the snapshot, and the bytes of a different
@@ -70,7 +70,7 @@ fn zigzag(number: i64) -> Vec<u8> {
 }
 
 impl Sites {
-    /// Writes a value and records its [`Site`]; `other` is the different value for the test.
+    /// Writes a value and records its [`Site`]. `other` holds the bytes that replace the value in the test.
     fn leaf(&mut self, own: &[u8], other: Vec<u8>) -> Result<(), Error> {
         let first = self.bytes.len();
         self.bytes.extend(own);
@@ -78,7 +78,8 @@ impl Sites {
         Ok(())
     }
 
-    /// Records all bytes written since `first` as one [`Site`]; `other` is the different value for the test.
+    /// Records all bytes written since position `first` as one [`Site`]. `other` holds the bytes that replace
+    /// them in the test.
     fn note(&mut self, first: usize, other: Vec<u8>) {
         self.all.push(Site {
             path: self.path.join("."),
@@ -92,7 +93,7 @@ impl Sites {
         _ = self.leaf(&varint(index.into()), varint(other.into()));
     }
 
-    /// Writes a field under its name.
+    /// Writes a field, with its name as part of the path.
     fn field<T: Serialize + ?Sized>(&mut self, name: &'static str, value: &T) -> Result<(), Error> {
         self.path.push(name);
         value.serialize(&mut *self)?;
@@ -101,14 +102,14 @@ impl Sites {
     }
 }
 
-/// Serialiser of a list. The list without its last item serves as its different value.
+/// Serialiser of a list. In the test, a list is replaced by the same list without its last item.
 struct List<'a> {
     sites: &'a mut Sites,
-    /// Position of the list's length in the written bytes.
+    /// Byte position of the list's length.
     first: usize,
-    /// Position of the first item.
+    /// Byte position of the first item.
     items: usize,
-    /// Position of the last item.
+    /// Byte position of the last item.
     last: usize,
     /// Number of items.
     length: u64,
@@ -346,7 +347,8 @@ impl ser::SerializeTuple for Tuple<'_> {
     }
 }
 
-/// Implements serialisation of structs, and of tuple variants, whose fields have no names.
+/// Implements the serialisation of structs with named fields, and of tuple structs and tuple variants with
+/// unnamed fields.
 macro_rules! fields {
     ($($tuple:ident $element:ident),*; $($structure:ident),*) => {
         $(impl ser::$tuple for &mut Sites {
@@ -395,15 +397,16 @@ fn with_state(header: &[u8], state: &[u8]) -> Vec<u8> {
     changed
 }
 
-/// Returns whether a world stores a value with a path that ends in `end`. An empty list does not count.
+/// Returns whether a world stores a value with a path that ends in `end`. The items of an empty list are not
+/// stored.
 fn stores<D: Dim>(world: &World<D>, end: &str) -> bool {
     let mut sites = Sites::default();
     world.serialize(&mut sites).unwrap();
     sites.all.iter().any(|site| site.path.ends_with(end))
 }
 
-/// Changes each stored value of a world alone, and checks that the hash changes or loading fails. Counts the
-/// changes by path.
+/// Changes each stored value of a world alone, and checks that the hash changes or loading fails. Adds the
+/// number of changes of each path to `counts`.
 fn check_all_values<D: Dim>(world: &World<D>, counts: &mut BTreeMap<String, u32>) {
     let mut sites = Sites::default();
     world.serialize(&mut sites).unwrap();
@@ -508,7 +511,7 @@ fn world_of_everything<D: Blades>(n: usize) -> World<D> {
             assert!(world.cut(cube, &blade).unwrap() > 0);
         }
         world.step();
-        // Returns as soon as a node is in its cooldown after a release. Only a growing crack starts a
+        // Returns in the first tick with a node in its cooldown after a split. Only a growing crack starts a
         // cooldown; a cut does not.
         if tick > 11 && stores(&world, "state.cooldowns.points") {
             return world;

@@ -1,4 +1,4 @@
-//! Tick lengths: durations in seconds do not depend on the tick.
+//! Tick lengths: physical results do not depend on the length of a tick.
 
 use fuwafuwa::{
     DEFAULT_TICK, Dim, Dim2, Dim3, DimAngular, DimVector, Error, Event, Hooks, MAX_TICK, MIN_TICK,
@@ -51,7 +51,7 @@ fn pass<D: Dim>(world: &mut World<D>, seconds: f32, mut watch: impl FnMut(&World
 }
 
 fn check_fall<D: Dim>() {
-    // A body falls 1.226 m in half a second, whatever the length of a tick.
+    // A body falls 1.226 m in 0.5 s, whatever the length of a tick.
     for tick in TICKS {
         let mut world = world::<D>(tick);
         let ball = world.add_soft_body(ball::<D>(12).translated(vector(0.0, 5.0, 0.0)));
@@ -73,8 +73,8 @@ fn fall_distance_is_independent_of_tick() {
     check_fall::<Dim3>();
 }
 
-/// Returns the time when a dropped ball first touches the floor, the lowest height of its centre, and the
-/// time when it falls asleep.
+/// Returns the time at which a dropped ball first touches the floor [s], the lowest height of its centre [m],
+/// and the time at which it falls asleep [s].
 fn landing<D: Dim>(tick: f32) -> [f32; 3] {
     let mut world = world::<D>(tick);
     let ball = world.add_soft_body(ball::<D>(12).translated(vector(0.0, 0.5, 0.0)));
@@ -120,8 +120,7 @@ fn landing_is_independent_of_tick() {
     check_landing::<Dim3>();
 }
 
-/// Returns the number of nodes that a hand splits when it moves through a ball at a speed that does not
-/// depend on the tick.
+/// Returns the number of nodes that split when a hand moves through a ball at 1.5 m/s, for any tick length.
 fn torn<D: Dim>(tick: f32) -> u32 {
     let mut world = world::<D>(tick);
     let soft = Material {
@@ -176,8 +175,8 @@ fn substeps_per_second_are_independent_of_tick() {
             "tick {tick}: {a_second}"
         );
     }
-    // A body that is too stiff for the maximum number of substeps is softened by the same factor at any tick
-    // length.
+    // At any tick length, a body that is too stiff for the maximum number of substeps is softened by the same
+    // factor.
     let scale = |tick| {
         let stiff = Material {
             elasticity: fuwafuwa::inspect::Elasticity::new(5e7, 0.3).unwrap(),
@@ -223,7 +222,7 @@ fn config_rejects_tick_out_of_range() {
     }
 }
 
-/// Each field of the configuration takes effect on a running world.
+/// Checks that each field of a new configuration takes effect on a running world.
 #[test]
 fn set_config_takes_effect_immediately() {
     let usual = WorldConfig::default();
@@ -268,13 +267,13 @@ fn set_config_takes_effect_immediately() {
     near(found / before, kept * kept * kept * kept - 1.0);
 }
 
-/// Checks the hook that is called after each substep: it receives the same forces and torques as those stored
-/// at the end of the tick.
+/// Checks that the hook after each substep receives the same forces and torques as are stored at the end of
+/// the tick.
 fn check_callback<D: Dim>(tick: f32) {
     let mut world = world::<D>(tick);
     world.add_soft_body(ball::<D>(12));
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    // The bar meets the ball with one end, so that the contact both pushes and turns it.
+    // The bar meets the ball with one end, so that the contact exerts a force and a torque on the bar.
     let bar = Shape::capsule(vector(-1.0, 0.0, 0.0), vector(0.3, 0.0, 0.0), 0.1);
     let hand = RigidBody::coupled(bar).at(vector(-0.2, 1.2, depth));
     let hand = world.add_rigid_body(hand).unwrap();

@@ -1,4 +1,4 @@
-//! Worlds: falling, rest, sleep, cuts, contacts, tears and views.
+//! Worlds: falling, rest, sleep, cuts, contacts, tears and access to pieces and surfaces.
 
 use fuwafuwa::{
     Blade, Dim, Dim2, Dim3, DimVector, ElementId, Event, Facet, Material, MotionType, NodeId,
@@ -36,7 +36,7 @@ fn validate<D: Dim>(world: &World<D>) {
     }
 }
 
-/// Returns the volume enclosed by all facets, by the divergence theorem.
+/// Returns the volume enclosed by all surface faces, by the divergence theorem [m³].
 fn volume_inside<D: Dim>(body: &SoftBody<D>) -> f32 {
     let of = |facet: Facet| {
         let [a, b, c, d] = facet.corners;
@@ -191,7 +191,7 @@ fn ball_falls_sleeps_and_wakes_when_touched() {
     check_falls_rests_and_sleeps::<Dim3>(12);
 }
 
-/// Moves a hand through the body at 20 body widths per second, and checks that the state stays valid.
+/// Moves a hand through a body 1 m wide at 20 m/s, and checks that the state stays valid.
 fn check_slam<D: Dim>(n: usize, drive: MotionType) {
     let mut world = World::<D>::new(weightless()).unwrap();
     let soft = world.add_soft_body(ball::<D>(n, Material::default()));
@@ -247,7 +247,8 @@ fn inverted_body_recovers_and_stays_finite() {
     assert!(view.high[0] - view.low[0] < 2.0, "{view:?}");
 }
 
-/// A body that is too stiff for the allowed substeps is softened, and `stiffness_scale` returns the factor.
+/// A body that is too stiff for the maximum number of substeps is softened, and `stiffness_scale` returns the
+/// factor.
 #[test]
 fn too_stiff_body_is_softened() {
     let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
@@ -267,8 +268,8 @@ fn too_stiff_body_is_softened() {
     assert!(view.low[1] > -0.05 && view.high[1] < 1.5, "{view:?}");
 }
 
-/// Checks that neither a body nor a cloud of crumbs passes through another body at ten body widths per
-/// second.
+/// Checks that at 10 m/s, neither a body nor a cloud of crumbs passes through another body, which is 1 m
+/// wide.
 fn check_no_tunnelling<D: Dim>(n: usize) {
     for crumbles in [false, true] {
         let mut world = World::<D>::new(weightless()).unwrap();
@@ -301,8 +302,8 @@ fn fast_body_does_not_tunnel() {
     check_no_tunnelling::<Dim3>(10);
 }
 
-/// Checks that the force for a force-feedback stick, updated 960 times a second, is smooth. It must not
-/// jitter while the hand rests on a body, nor jump between substeps while the hand pushes in.
+/// Checks that the force for a force-feedback stick, updated 960 times a second, is smooth. The force must
+/// not jitter while the hand rests on a body, nor jump between substeps while the hand pushes into the body.
 fn check_smooth_reaction<D: Dim>(n: usize) {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
@@ -322,7 +323,7 @@ fn check_smooth_reaction<D: Dim>(n: usize) {
         world.step();
         let felt = world.rigid_body(hand).unwrap().reactions();
         let up = felt.map(|reaction| reaction.coupling[1]);
-        // Leaves out the first tick, before the target starts to move.
+        // Skips the first tick, in which the target does not move yet.
         if (1..120).contains(&tick) {
             steps.extend(up);
         } else if tick >= 420 {

@@ -7,38 +7,40 @@ use std::ops::Range;
 /// Maximum number of boxes in a leaf. Smaller leaves make queries faster and construction slower.
 const LEAF: usize = 4;
 
-/// Relative margin of a box around its content: ten times the tolerance of the primitives.
+/// Margin of a box around its content, as a share of its widest side: ten times the tolerance 10⁻⁴ of the
+/// intersection tests.
 const LITTLE: f32 = 1e-3;
-/// Margin of a box relative to its largest coordinate: some eight units in the last place.
+/// Additional margin of a box, as a share of its largest absolute coordinate: about eight rounding errors of
+/// single precision.
 const ROUNDING: f32 = 1e-6;
 
-/// Factor by which refitting may increase the summed widths of all nodes before a rebuild pays off. Rotation
-/// alone increases the widths of a box by up to √3.
+/// Limit for refitting. If the summed widths of all nodes exceed this multiple of their sum at construction,
+/// the tree should be rebuilt. Rotation alone increases the widths of a box by up to √3.
 const WORN: f32 = 2.0;
 
-/// Box without content.
+/// Empty box: its lower corner is above its upper corner.
 const EMPTY: Bounds = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 
 /// Bounding-volume hierarchy over a list of boxes, which are identified by their index in the list.
 ///
-/// Results of a search do not depend on the shape of the tree: the cost of a box never decreases from a box to
-/// the boxes within, not even by rounding, and every item is checked against its own box.
+/// The shape of the tree does not affect the results of a search. The cost of a box never exceeds the cost of
+/// a box inside it, not even by rounding, and every item is checked against its own box.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
     /// Nodes of the tree; a parent precedes its children.
     nodes: Vec<TreeNode>,
-    /// Items, in the order of the leaves.
+    /// Boxes of the list, sorted so that each leaf holds a contiguous range.
     items: Vec<TreeItem>,
-    /// Sum of the widths of all nodes when the tree was built [m].
+    /// Sum of the widths of all nodes along all axes when the tree was built [m].
     built_width: f32,
 }
 
 #[derive(Clone, Debug)]
 struct TreeNode {
     bounds: Bounds,
-    /// Range of `items` that a leaf holds; empty for an inner node.
+    /// Range of `Tree::items` that a leaf holds; empty for an inner node.
     leaf: Range<u32>,
-    /// Children of an inner node.
+    /// Indices of both children in `Tree::nodes`; unused in a leaf.
     children: [u32; 2],
 }
 
@@ -66,7 +68,7 @@ impl Tree {
         tree
     }
 
-    /// Adds a node over a range of `items`; returns its index.
+    /// Adds a node over a range of `items`, and below it all its descendants. Returns the index of the node.
     fn grow(&mut self, range: Range<usize>) -> u32 {
         let items = &mut self.items[range.clone()];
         let bounds = around_items(items);
@@ -124,7 +126,7 @@ impl Tree {
         width <= WORN * self.built_width
     }
 
-    /// Returns the summed widths of all nodes [m].
+    /// Returns the sum of the widths of all nodes along all axes [m].
     fn width(&self) -> f32 {
         let widths = |node: &TreeNode| {
             let [low, high] = node.bounds;
@@ -133,9 +135,10 @@ impl Tree {
         self.nodes.iter().map(widths).sum()
     }
 
-    /// Visits the items with a finite cost of at most `limit`, or of at most the smallest cost that `visit`
-    /// has returned so far. `cost` must not be larger for a box than for a box inside it. `visit` receives
-    /// the index of an item and the cost of its box, and returns the cost of its content.
+    /// Visits the items whose boxes have a finite cost of at most `limit`. `visit` receives the index of an
+    /// item and the cost of its box, and returns the cost of the item itself. After each visit, the limit
+    /// falls to the returned cost if it is lower. `cost` must not be larger for a box than for a box inside
+    /// it.
     pub fn search(
         &self,
         mut limit: f32,
@@ -162,7 +165,7 @@ impl Tree {
             if leaf.is_empty() {
                 let [a, b] =
                     children.map(|child| (child, cost(&self.nodes[child as usize].bounds)));
-                // The cheaper child goes last onto the stack, so that it is visited first.
+                // Pushes the cheaper child last onto the stack, so that it is visited first.
                 let ordered = if b.1 < a.1 { [a, b] } else { [b, a] };
                 stack.extend(ordered.into_iter().filter(|child| counts(child.1, limit)));
             }
@@ -175,14 +178,14 @@ fn around_items(items: &[TreeItem]) -> Bounds {
     bounds.reduce(around).unwrap_or(EMPTY)
 }
 
-/// Returns the box around two boxes.
+/// Returns the smallest box that contains two boxes.
 pub fn around([a, b]: Bounds, [c, d]: Bounds) -> Bounds {
     let low = [0, 1, 2].map(|axis: usize| a[axis].min(c[axis]));
     let high = [0, 1, 2].map(|axis: usize| b[axis].max(d[axis]));
     [low.into(), high.into()]
 }
 
-/// Returns the box around points, with a margin against rounding.
+/// Returns the smallest box that contains all points, enlarged by a margin against rounding.
 pub fn around_all(points: impl IntoIterator<Item = Vec3>) -> Bounds {
     let points = points.into_iter();
     with_margin(points.fold(EMPTY, |bounds, at| around(bounds, [at, at])))
@@ -210,8 +213,8 @@ pub fn distance_from([low, high]: &Bounds, at: Vec3) -> f32 {
     Vec3::from([0, 1, 2].map(beyond)).length()
 }
 
-/// Returns the distance along a ray to the entry into a box, in multiples of the direction; infinite if the
-/// ray misses the box.
+/// Returns the distance along a ray to the point where it enters a box, in multiples of the length of
+/// `direction`. Returns 0 if the ray starts inside, and infinity if it misses the box.
 pub fn entry([low, high]: &Bounds, from: Vec3, direction: Vec3) -> f32 {
     let (mut first, mut last) = (0.0f32, f32::INFINITY);
     for axis in 0..3 {
@@ -240,7 +243,7 @@ mod tests {
         places.map(|at| [at, at]).collect()
     }
 
-    /// Returns the smallest distance from a goal, and the number of visited items.
+    /// Returns the distance from `goal` to the nearest box, and the number of items that the search visited.
     fn nearest(tree: &Tree, boxes: &[Bounds], goal: Vec3) -> (f32, usize) {
         let (mut best, mut visited) = (f32::INFINITY, 0);
         tree.search(
@@ -287,7 +290,7 @@ mod tests {
             assert_eq!(best, all.fold(f32::INFINITY, f32::min));
             assert!(visited < 100, "{visited}");
         }
-        // Refitting to the same boxes in another order makes the nodes wide, but searches stay correct.
+        // Boxes in another order make the refitted nodes wide, but searches must stay correct.
         let shuffled: Vec<Bounds> = (0..500).map(|k| boxes[k * 7 % 500]).collect();
         assert!(!tree.refit(&shuffled));
         let (best, _) = nearest(&tree, &shuffled, Vec3::ZERO);

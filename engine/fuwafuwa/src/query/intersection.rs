@@ -5,15 +5,15 @@ use crate::foundation::dim::{Dim, corner};
 use crate::rigid_body::solid::flat;
 use glam::Vec3;
 
-/// Number of Newton iterations that locate a point in a deformed cell. 6 are sufficient for cells with
-/// corners displaced at random by up to 0.6 of their width; 12 leave a factor of 2.
+/// Number of Newton iterations that find the local coordinates of a point in a deformed cell. 6 iterations
+/// suffice if corners are displaced at random by up to 0.6 of the cell's width; 12 are a safety factor of 2.
 const ROUNDS: usize = 12;
 /// Relative tolerance at the borders of segments, triangles and cells, so that rounding leaves no gap between
-/// neighbours. It is the single-precision resolution of a voxel of 1 cm at 16 m from the origin.
+/// neighbours. At 16 m from the origin, it equals the rounding error of single precision for a voxel of 1 cm.
 const LITTLE: f32 = 1e-4;
 
-/// Returns the distance to the intersection of a ray with a segment in 2D, as a multiple of the length of
-/// `direction`.
+/// Returns the distance along a ray to a segment in 2D, as a multiple of the length of `direction`. Returns
+/// `None` if the ray misses the segment.
 pub fn ray_meets_segment(from: Vec3, direction: Vec3, [a, b]: [Vec3; 2]) -> Option<f32> {
     let flat = |a: Vec3, b: Vec3| a[0] * b[1] - a[1] * b[0];
     let (along, reach) = (b - a, a - from);
@@ -24,8 +24,8 @@ pub fn ray_meets_segment(from: Vec3, direction: Vec3, [a, b]: [Vec3; 2]) -> Opti
     (is_in && far >= 0.0 && far.is_finite()).then_some(far)
 }
 
-/// Returns the distance to the intersection of a ray with a triangle, as a multiple of the length of
-/// `direction` [Möller 1997].
+/// Returns the distance along a ray to a triangle, as a multiple of the length of `direction` [Möller 1997].
+/// Returns `None` if the ray misses the triangle.
 pub fn ray_meets_triangle(from: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f32> {
     let (one, two, reach) = (b - a, c - a, from - a);
     let across = direction.cross(two);
@@ -68,10 +68,10 @@ pub fn nearest_on_triangle(at: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     others.into_iter().fold(first, nearer)
 }
 
-/// Returns whether a point is in a deformed cell, given by its corners in the order of [`corner`]: whether
-/// local coordinates from 0 to 1 map to the point.
+/// Returns whether a point is in a deformed cell with corners in the order of [`corner`]. It is inside if
+/// multilinear interpolation of the corners yields the point at local coordinates from 0 to 1.
 pub fn is_in_block<D: Dim>(at: Vec3, corners: &[Vec3]) -> bool {
-    // Corners relative to the point: far from the origin, absolute coordinates would lose precision.
+    // Moves the origin to the point, because absolute coordinates lose precision far from the world's origin.
     let corners: Vec<Vec3> = corners.iter().map(|&corner| corner - at).collect();
     let mut shares = flat::<D>(Vec3::splat(0.5));
     for _ in 0..ROUNDS {
@@ -93,8 +93,8 @@ pub fn is_in_block<D: Dim>(at: Vec3, corners: &[Vec3]) -> bool {
             .all(|share| (-LITTLE..=1.0 + LITTLE).contains(share))
 }
 
-/// Returns the point at local coordinates of a deformed cell, and the derivatives of the point by each local
-/// coordinate.
+/// Interpolates the corners of a deformed cell at local coordinates. Returns the interpolated point and its
+/// derivative by each local coordinate.
 fn in_block<D: Dim>(shares: Vec3, corners: &[Vec3]) -> (Vec3, [Vec3; 3]) {
     let mut place = Vec3::ZERO;
     let mut slopes = Vec3::AXES;
@@ -105,7 +105,7 @@ fn in_block<D: Dim>(shares: Vec3, corners: &[Vec3]) -> (Vec3, [Vec3; 3]) {
             0 => 1.0 - shares[axis],
             _ => shares[axis],
         };
-        // In 2D, corners do not differ along the third axis, so its weight is 1.
+        // In 2D, all corners have the same third coordinate, so the weight along the third axis is 1.
         let weights = [0, 1, 2].map(|axis| if axis < D::N { weight(axis) } else { 1.0 });
         place += at * weights.iter().product::<f32>();
         for axis in 0..D::N {

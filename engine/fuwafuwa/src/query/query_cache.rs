@@ -1,9 +1,10 @@
 //! Search trees of a world, kept between queries.
 //!
-//! Each body has a tree over its exposed faces and, once a query requires it, a tree over its filled cells. A
-//! tree over all objects stands above the trees of the bodies. Before a query, the trees of bodies that have
-//! changed are updated: if the same faces have moved, their boxes are refitted; otherwise the tree is
-//! rebuilt. The trees are not part of the state of a world: clones and loaded worlds start without them.
+//! Each body has a tree over its exposed faces. Once a query requires it, the body also has a tree over its
+//! filled cells, the cells that contain material. A tree over all objects stands above the trees of the
+//! bodies. Before a query, the trees of changed bodies are updated. If faces or cells only moved, their boxes
+//! are refitted; if some were added or removed, the tree is rebuilt. The trees are not part of the state of a
+//! world: clones and loaded worlds start without trees.
 
 use super::bounding_tree::{Tree, around_all, with_margin};
 use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
@@ -43,18 +44,18 @@ impl Clone for QueryCache {
 /// Search trees over all objects of a world.
 #[derive(Debug, Default)]
 pub struct QueryTrees {
-    /// Revisions of the soft and of the rigid bodies at the last update of the trees; `None` before the first
-    /// update.
+    /// Revision counters of the soft bodies and of the rigid bodies at the last update of the trees; `None`
+    /// before the first update.
     revisions: Option<[u64; 2]>,
-    /// Trees of each soft body, by handle.
+    /// Search trees of all soft bodies, ascending by body handle.
     pub bodies: Vec<BodyTrees>,
     /// All objects, in the order of [`ObjectRef`](crate::ObjectRef).
     pub objects: Vec<TreeObject>,
-    /// Tree over the objects in `bounded`.
+    /// Tree over the bounding boxes of the objects in `bounded`.
     pub tree: Tree,
-    /// Indices of the objects with finite boxes.
+    /// Indices in `objects` of all soft bodies and all rigid bodies with bounded shapes.
     pub bounded: Vec<u32>,
-    /// Indices of the objects without finite boxes, such as half-spaces.
+    /// Indices in `objects` of rigid bodies with unbounded shapes, the half-spaces.
     pub unbounded: Vec<u32>,
 }
 
@@ -69,33 +70,34 @@ pub enum TreeObject {
 #[derive(Debug)]
 pub struct BodyTrees {
     pub body: SoftBodyHandle,
-    /// Topology and positions of the body at the last update of the trees.
+    /// Topology of the body at the last update of the trees.
+    /// Node positions at the last update of the trees [m].
     bookmark: Bookmark,
     positions: IndexVec<NodeId, Row>,
-    /// Box around all nodes.
+    /// Bounding box of all nodes [m].
     bounds: Bounds,
     /// Exposed faces, in the order of [`SoftBody::facets`].
     pub surface: ListTree<Facet>,
     /// Filled cells, built by the first query that requires them.
     cells: OnceLock<ListTree<FilledCell>>,
-    /// Whether a query has used the cells since the last update.
+    /// Whether a query has used `cells` since the last update. If not, the next update discards `cells`.
     uses_cells: AtomicBool,
 }
 
-/// Filled cell of an element.
+/// Part of an element that contains material: a voxel for elements of level 0, otherwise one child cell.
 #[derive(Copy, Clone, Debug)]
 pub struct FilledCell {
     pub element: ElementId,
     pub piece: PieceId,
-    /// Material number.
+    /// Material number, counted from 1.
     pub material: u8,
-    /// Number of the child in the cell of the element.
+    /// Index of the child within the cell of the element; 0 if the element is one voxel.
     child: u8,
     /// Corners [m], in the order of [`corner`](crate::foundation::dim::corner); only the first four in 2D.
     pub corners: [Vec3; 8],
 }
 
-/// List of items and a tree over their boxes.
+/// List of items, and a search tree over their bounding boxes.
 #[derive(Debug)]
 pub struct ListTree<T> {
     pub items: Vec<T>,
@@ -103,7 +105,7 @@ pub struct ListTree<T> {
 }
 
 impl QueryCache {
-    /// Returns the trees for the present state of `world`, the owner of the cache.
+    /// Returns the search trees, updated to the present state of `world`, which must own this cache.
     pub fn trees<D: Dim>(&self, world: &World<D>) -> Arc<QueryTrees> {
         let revisions = [world.bodies.revision(), world.rigids.revision()];
         let mut shared = self.trees.lock().unwrap_or_else(PoisonError::into_inner);
@@ -219,7 +221,8 @@ impl<T> ListTree<T> {
         }
     }
 
-    /// Replaces the items. If they are the same as before, except for their positions, the tree is refitted.
+    /// Replaces the items. The tree is refitted if `is_same` holds for each old and new item; otherwise it is
+    /// rebuilt. It is also rebuilt if refitting would make it slow.
     fn update(
         &mut self,
         items: Vec<T>,
@@ -244,14 +247,14 @@ fn cell_bounds<D: Dim>(cell: &FilledCell) -> Bounds {
     around_all(cell.corners.into_iter().take(D::CORNERS))
 }
 
-/// Returns the box around all nodes of a body. The box contains all filled cells, even where the surface is
-/// folded in.
+/// Returns the bounding box of all nodes of a body. Interior nodes are included, because they can lie outside
+/// the surface where a body is strongly folded.
 fn body_bounds<D: Dim>(body: &SoftBody<D>) -> Bounds {
     let nodes = body.mesh().nodes();
     around_all(nodes.map(|(node, _)| body.positions()[node].xyz()))
 }
 
-/// Returns the filled cells of a body, in the order of its elements.
+/// Returns the filled cells of a body, in the order of the elements that contain them.
 fn filled_cells<D: Dim>(body: &SoftBody<D>) -> Vec<FilledCell> {
     let mut cells = Vec::new();
     for view in body.element_views() {

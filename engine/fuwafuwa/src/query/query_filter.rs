@@ -52,37 +52,37 @@ impl<'a> QueryFilter<'a> {
         self
     }
 
-    /// Considers only objects that collide with these layers, see [`Layers::meet`].
+    /// Considers only objects whose layers collide with `layers`, see [`Layers::meet`].
     #[must_use]
     pub fn layers(mut self, layers: Layers) -> Self {
         self.layers = Some(layers);
         self
     }
 
-    /// Considers only rigid bodies. Replaces [`QueryFilter::only_soft`].
+    /// Considers only rigid bodies. Cancels an earlier [`QueryFilter::only_soft`].
     #[must_use]
     pub fn only_rigid(mut self) -> Self {
         self.kinds = Kinds::Rigid;
         self
     }
 
-    /// Considers only soft bodies. Replaces [`QueryFilter::only_rigid`].
+    /// Considers only soft bodies. Cancels an earlier [`QueryFilter::only_rigid`].
     #[must_use]
     pub fn only_soft(mut self) -> Self {
         self.kinds = Kinds::Soft;
         self
     }
 
-    /// Considers sensors, too.
+    /// Includes sensors, which queries ignore by default.
     #[must_use]
     pub fn including_sensors(mut self) -> Self {
         self.includes_sensors = true;
         self
     }
 
-    /// Considers only objects for which `predicate` returns true. A query may call it several times for an
-    /// object, and in any order, so that it should be cheap and without side effects. It may itself query
-    /// the world.
+    /// Considers only objects for which `predicate` returns true. A query may call `predicate` several times
+    /// for an object, and in any order, so it should be cheap and without side effects. The predicate may
+    /// itself query the world.
     #[must_use]
     pub fn with_predicate(mut self, predicate: &'a dyn Fn(ObjectRef) -> bool) -> Self {
         self.predicate = Some(predicate);

@@ -33,7 +33,7 @@ impl RigidState {
         }
     }
 
-    /// Returns whether the body is at rest: it sleeps, is fixed, or is kinematic and has reached its target.
+    /// Returns whether the body is at rest: it sleeps, is fixed, or is kinematic with zero velocity.
     pub(crate) fn rests(&self) -> bool {
         match self.motion_type {
             MotionType::Kinematic => !self.pushes(),
@@ -53,7 +53,7 @@ impl RigidState {
         !self.is_sensor && other.meets(self.layers)
     }
 
-    /// Returns whether the body can move in this substep.
+    /// Returns whether the body may move in this substep: it is neither fixed nor asleep.
     #[inline(always)]
     pub(crate) fn moves(&self) -> bool {
         !matches!(self.motion_type, MotionType::Fixed) && !self.asleep
@@ -87,7 +87,7 @@ impl RigidState {
         }
     }
 
-    /// Returns the largest distance of the shape from its local origin [m].
+    /// Returns an upper bound of the distance from the local origin to any point of the shape [m].
     pub(crate) fn extent(&self) -> f32 {
         let [low, high] = self.local_shape.bounds();
         let furthest = [0, 1, 2].map(|axis: usize| low[axis].abs().max(high[axis].abs()));
@@ -101,7 +101,7 @@ impl RigidState {
         Ok(())
     }
 
-    /// Sets the pose at once and wakes the body; its velocity stays.
+    /// Sets the pose immediately, makes it the target, and wakes the body. The velocity does not change.
     pub(crate) fn place<D: Dim>(
         &mut self,
         position: Vec3,
@@ -134,13 +134,14 @@ impl RigidState {
         self.asleep = true;
     }
 
-    /// Rotates the linear and the angular velocity.
+    /// Rotates the vectors of the linear and the angular velocity; the pose stays.
     pub(crate) fn rotate_velocity(&mut self, rotation: Rotation) {
         self.velocity = rotation.apply(self.velocity);
         self.angular_velocity = rotation.apply(self.angular_velocity);
     }
 
-    /// Integrates gravity and air drag: velocities decay at the rate `drag` [1/s] over `duration` [s].
+    /// Integrates `acceleration` [m/s²] and air drag over `duration` [s]. Drag reduces the linear and the
+    /// angular velocity at the decay rate `drag` [1/s].
     pub(crate) fn fall<D: Dim>(&mut self, acceleration: Vec3, drag: f32, duration: f32) {
         let gain = flat::<D>(acceleration) * duration;
         let left = 1.0 / (1.0 + drag * duration);
@@ -148,7 +149,7 @@ impl RigidState {
         self.angular_velocity *= left;
     }
 
-    /// Integrates position and rotation.
+    /// Integrates position and rotation over `duration` [s].
     pub(crate) fn drift(&mut self, duration: f32) {
         if !self.moves() {
             return;
@@ -163,8 +164,8 @@ impl RigidState {
         );
         let rotation = self.rotation.then(way);
         if let Some(inertia) = &self.inertia {
-            // Updates the angular velocity so that the angular momentum is preserved: no torque acts, but the
-            // body has turned relative to its axis of rotation.
+            // No torque acts, so the angular momentum is preserved. The inertia about the world axes has
+            // changed with the rotation, so the angular velocity changes.
             self.angular_velocity =
                 inertia.spin_kept(self.angular_velocity, self.rotation, rotation);
         }
@@ -177,8 +178,9 @@ impl RigidState {
         self.twirl(impulse, lever);
     }
 
-    /// Applies a contact impulse [N s] at the offset `lever` [m] from the body's position. Adds its force,
-    /// averaged over a substep of `duration` [s], to the reaction of the substep.
+    /// Applies a contact impulse [N s] at the offset `lever` [m] from the body's position. Adds the mean
+    /// contact force, the impulse divided by the substep length `duration` [s], to the reaction of this
+    /// substep.
     #[inline(always)]
     pub(crate) fn push_at(&mut self, impulse: Vec3, lever: Vec3, duration: f32) {
         self.push(impulse, duration);
@@ -205,8 +207,8 @@ impl RigidState {
         gain
     }
 
-    /// Returns how much an impulse of 1 N s along the unit direction `way` changes the velocity of the point
-    /// at which it acts [1/kg]. The point is at the offset `lever` [m] from the body's position.
+    /// Returns the velocity change of a body point per unit impulse on that point along the unit direction
+    /// `way` [1/kg]. The point is at the offset `lever` [m] from the body's position.
     pub(crate) fn gain(&self, lever: Vec3, way: Vec3) -> Vec3 {
         let gain = way * self.inverse_mass();
         match self.can_be_turned() {
@@ -218,8 +220,8 @@ impl RigidState {
         }
     }
 
-    /// Returns an upper bound of the inverse effective mass at a world-space point [m], over all directions
-    /// [1/kg].
+    /// Returns an upper bound of the inverse effective mass at a world-space point [m], valid for all
+    /// directions of an impulse [1/kg].
     #[inline(always)]
     pub(crate) fn yields_near(&self, at: Vec3) -> f32 {
         let gain = self.inverse_mass();
@@ -231,13 +233,14 @@ impl RigidState {
         gain + (x[0] + y[1] + z[2]) * lever.dot(lever)
     }
 
-    /// Returns whether contacts can turn the body.
+    /// Returns whether contacts can change the angular velocity: the body is dynamic and awake.
     #[inline(always)]
     fn can_be_turned(&self) -> bool {
         self.is_dynamic() && !self.asleep
     }
 
-    /// Returns whether the body can have an angular velocity.
+    /// Returns whether the angular velocity may differ from 0. A coupled body has an angular velocity only in
+    /// ticks in which it rotates to its target rotation.
     #[inline(always)]
     fn turns(&self) -> bool {
         match self.motion_type {

@@ -11,21 +11,21 @@ use std::f32::consts::PI;
 /// Symmetric 3×3 matrix, by rows.
 pub type Matrix = [Vec3; 3];
 
-/// Principal axes and moments of inertia in local coordinates.
+/// Principal axes and principal moments of inertia in local coordinates.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Inertia {
     axes: [Vec3; 3],
     /// Principal moments [kg m²]; in 2D only the third is not 0.
     moments: Vec3,
-    /// Inverse moments [1/(kg m²)]; 0 for axes about which the body cannot rotate.
+    /// Inverse principal moments [1/(kg m²)]; 0 for axes about which the body cannot rotate.
     inverse: Vec3,
 }
 
 hash_state! { struct Inertia { axes, moments, inverse } }
 
 impl Inertia {
-    /// Returns the inertia of a shape centred on the origin, for a mass [kg].
+    /// Returns the inertia of a body with a mass [kg], uniform density and a shape centred on the origin.
     pub fn of<D: Dim>(local_shape: &Solid, mass: f32) -> Self {
         let (axes, shares) = match *local_shape {
             Solid::HalfSpace { .. } => (Rotation::NONE.axes(), Vec3::ZERO),
@@ -52,12 +52,13 @@ impl Inertia {
         }
     }
 
-    /// Returns whether the inertia is finite and the body can rotate.
+    /// Returns whether all moments and inverse moments are finite, and the body can rotate about the third
+    /// axis.
     pub fn is_sound(&self) -> bool {
         self.moments.is_finite() && self.inverse.is_finite() && self.inverse[2] > 0.0
     }
 
-    /// Returns the inverse inertia matrix about the world axes [1/(kg m²)] for a rotation of the body.
+    /// Returns the inverse inertia matrix about the world axes [1/(kg m²)] of a body with the given rotation.
     pub fn inverse(&self, rotation: Rotation) -> Matrix {
         let mut matrix = [Vec3::ZERO; 3];
         for (axis, inverse) in self.axes.into_iter().zip(self.inverse.to_array()) {
@@ -69,8 +70,8 @@ impl Inertia {
         matrix
     }
 
-    /// Returns the angular velocity [rad/s] that preserves the angular momentum while the body rotates from
-    /// `before` to `after`.
+    /// Returns the angular velocity [rad/s] after a body with angular velocity `spin` has rotated from
+    /// `before` to `after` without torque. The angular momentum is preserved.
     pub fn spin_kept(&self, spin: Vec3, before: Rotation, after: Rotation) -> Vec3 {
         let axes = self.axes.into_iter().zip(self.moments.to_array());
         let momentum = axes.fold(Vec3::ZERO, |sum, (axis, moment)| {
@@ -91,7 +92,7 @@ pub fn times(matrix: &Matrix, vector: Vec3) -> Vec3 {
     Vec3::from([0, 1, 2].map(|row: usize| matrix[row].dot(vector)))
 }
 
-// `cuboid`, `ball` and `bar` return moments of inertia per unit mass [m²].
+// `cuboid`, `ball` and `bar` return the principal moments of inertia per unit mass [m²].
 
 fn cuboid(half: Vec3) -> Vec3 {
     let [x, y, z] = half.to_array();
@@ -101,17 +102,19 @@ fn cuboid(half: Vec3) -> Vec3 {
     Vec3::new(about(y, z), about(z, x), about(x, y))
 }
 
-/// Returns the moments of inertia of a ball, or in 2D of a disc, per unit mass [m²].
+/// Returns the principal moments of inertia of a ball, or in 2D of a disc, per unit mass [m²].
 fn ball<D: Dim>(radius: f32) -> Vec3 {
     let share = if D::N == 2 { 0.5 } else { 0.4 };
     Vec3::splat(share * radius * radius)
 }
 
-/// Returns the moments of inertia of a capsule along the first axis, per unit mass [m²]. The capsule consists
-/// of a cylinder and two half balls, in 2D of a rectangle and two half discs.
+/// Returns the principal moments of inertia of a capsule along the first axis, per unit mass [m²]. The
+/// capsule consists of a cylinder of length `long` [m] and two half balls, in 2D of a rectangle and two half
+/// discs.
 fn bar<D: Dim>(long: f32, radius: f32) -> Vec3 {
     let squared = radius * radius;
-    // `middle` is the distance of the centroid of a half ball from its flat side.
+    // `between` and `round` are the volumes of the cylinder and of both half balls. `middle` is the distance
+    // of the centroid of a half ball from its flat side.
     let (between, round, middle) = match D::N {
         2 => (2.0 * radius * long, PI * squared, 4.0 * radius / (3.0 * PI)),
         _ => (
@@ -132,7 +135,7 @@ fn bar<D: Dim>(long: f32, radius: f32) -> Vec3 {
     Vec3::new(0.5 * between * squared + round * own, aside, aside)
 }
 
-/// Returns three orthonormal axes, the first along a direction.
+/// Returns three orthonormal axes, the first of them parallel to `way`.
 fn axes_along(way: Vec3) -> [Vec3; 3] {
     let long = way.length();
     if long <= 0.0 {
@@ -149,7 +152,7 @@ mod tests {
     use crate::foundation::dim::{Dim2, Dim3};
     use crate::rigid_body::solid::flat;
 
-    /// Compares the moments of a shape with a numerical sum over small cubes.
+    /// Compares the moments of inertia of a shape with a numerical sum over small cubes.
     fn check<D: Dim>(local_shape: Solid) {
         let [low, high] = local_shape.bounds();
         let count = if D::N == 2 { 200 } else { 60 };
@@ -228,7 +231,8 @@ mod tests {
         }
         let off = momentum(spin, rotation) - before;
         assert!(off.length() < 1e-3 * before.length(), "{off:?}");
-        // Rotation about the middle principal axis is unstable [Euler], so the body must have tumbled.
+        // Rotation about the middle principal axis is unstable (tennis racket theorem), so the rotation axis
+        // must have tumbled.
         assert!(most > 2.0, "{most}");
     }
 }

@@ -15,9 +15,9 @@ use crate::foundation::hash::hash_state;
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Layers {
-    /// Layers of which the body is a member; only the first by default.
+    /// Bit mask of the layers that the body belongs to; by default only the first layer.
     pub memberships: u32,
-    /// Layers that the body collides with; all by default.
+    /// Bit mask of the layers that the body collides with; by default all layers.
     pub filters: u32,
 }
 

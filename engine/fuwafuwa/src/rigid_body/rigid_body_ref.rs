@@ -9,7 +9,7 @@ use crate::rigid_body::shape::Shape;
 use crate::rigid_body::{MotionType, Reaction, RigidBody};
 use std::marker::PhantomData;
 
-/// Rigid body of a world, for reading; see [`World::rigid_body`](crate::World::rigid_body).
+/// Read access to a rigid body of a world; see [`World::rigid_body`](crate::World::rigid_body).
 #[derive(Copy, Clone, Debug)]
 pub struct RigidBodyRef<'a, D: Dim> {
     state: &'a RigidState,
@@ -22,8 +22,8 @@ impl<'a, D: Dim> RigidBodyRef<'a, D> {
         Self { state, dim }
     }
 
-    /// Returns a definition of the body with its present pose, velocity and target, for
-    /// example to add a copy. Sleep and reactions are not part of it.
+    /// Returns a definition of the body with its present pose, velocity and target, for example to add a
+    /// copy. The definition contains no sleep state and no reactions.
     pub fn definition(&self) -> RigidBody<D> {
         self.state.definition()
     }
@@ -63,12 +63,12 @@ impl<'a, D: Dim> RigidBodyRef<'a, D> {
         Velocity::from(self.state.twist())
     }
 
-    /// Returns the target position of a kinematic or coupled body [m]; without meaning for others.
+    /// Returns the target position of a kinematic or coupled body [m]; meaningless for other motion types.
     pub fn target_position(&self) -> D::Vector {
         D::Vector::from_vec3(self.state.target_position())
     }
 
-    /// Returns the target rotation of a kinematic or coupled body; without meaning for others.
+    /// Returns the target rotation of a kinematic or coupled body; meaningless for other motion types.
     pub fn target_rotation(&self) -> Rotation {
         self.state.target_rotation()
     }
@@ -103,7 +103,7 @@ impl<'a, D: Dim> RigidBodyRef<'a, D> {
         self.state.is_sensor
     }
 
-    /// Returns the number for use by the program.
+    /// Returns the user data, a number that the engine ignores.
     pub fn user_data(&self) -> u64 {
         self.state.user_data
     }

@@ -20,8 +20,8 @@ use std::mem::discriminant;
 /// Rigid bodies of a world.
 pub type RigidBodies = Arena<RigidBodyHandle, RigidState>;
 
-/// State of a rigid body in the simulation: the fields of [`RigidBody`], then derived and running values.
-/// Vectors have three coordinates in both dimensions.
+/// State of a rigid body in the simulation: the fields of [`RigidBody`], quantities derived from these
+/// fields, and quantities that change in each substep. Vectors have three coordinates in 2D, too.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidState {
@@ -47,23 +47,23 @@ pub struct RigidState {
     pub(crate) asleep: bool,
     /// Sleep timer: time for which the body has been slow [s].
     pub(crate) sleep_timer: f32,
-    /// Position at the start of the tick [m].
+    /// Position at the start of the tick [m]; an invalid body is reset to it.
     pub(super) position_before: Vec3,
-    /// Rotation at the start of the tick.
+    /// Rotation at the start of the tick; an invalid body is reset to it.
     pub(super) rotation_before: Rotation,
     /// Principal moments of inertia; `None` unless the body is dynamic.
     pub(super) inertia: Option<Inertia>,
     /// Inverse inertia matrix about the world axes [1/(kg m²)].
     pub(super) inverse_inertia: Matrix,
-    /// Target position at the end of the tick [m].
+    /// Target position for the end of the tick [m].
     pub(super) target: Vec3,
-    /// Target rotation at the end of the tick.
+    /// Target rotation for the end of the tick.
     pub(super) target_rotation: Rotation,
-    /// Target position in the present substep [m], on the way to `target`.
+    /// Target position in the present substep [m]. During a tick it moves linearly to `target`.
     pub(super) target_before: Vec3,
     /// Velocity of the target in this tick [m/s].
     pub(super) target_velocity: Vec3,
-    /// Reaction of each substep of the last tick.
+    /// Force and torque on the body in each substep of the last tick.
     pub(crate) reactions: Vec<ReactionSum>,
 }
 
@@ -79,12 +79,12 @@ hash_state! {
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReactionSum {
-    /// Contact force [N]; discontinuous when a soft body tears.
+    /// Contact force on the body [N]. Discontinuous when a soft body tears.
     pub contact: Vec3,
-    /// Torque of the contacts and knives about the position [N m]; in 2D only the third
-    /// component.
+    /// Torque of contacts and knives on the body about its position [N m]; in 2D only the third component.
     pub torque: Vec3,
-    /// Reversed force of the virtual coupling [N]: the force to play on a force-feedback device.
+    /// Force of the virtual coupling on the target, opposite to its force on the body [N]. A force-feedback
+    /// device should play this force.
     pub coupling: Vec3,
 }
 
@@ -149,11 +149,11 @@ impl RigidState {
         }
     }
 
-    /// Clears velocities that the motion type excludes: all of a fixed body, the angular one of a coupled
-    /// body.
+    /// Clears the velocities that the motion type excludes: both velocities of a fixed body, and the angular
+    /// velocity of a coupled body.
     pub(super) fn clear_unused_motion(&mut self) {
         if self.motion_type == MotionType::Fixed {
-            // The velocities may remain from an earlier motion type, such as kinematic or coupled.
+            // The body may have moved before its motion type became fixed.
             (self.velocity, self.target_velocity) = (Vec3::ZERO, Vec3::ZERO);
             self.stay();
         }
@@ -165,8 +165,8 @@ impl RigidState {
         }
     }
 
-    /// Sets the motion type in a world of `D`. If only the parameters of the type change, for example the
-    /// mass, the body keeps its target. A different type replaces the target by the present pose.
+    /// Sets the motion type in a world of dimension `D`. If only parameters change, for example the mass, the
+    /// body keeps its target. A different type replaces the target by the present pose.
     pub(crate) fn set_motion_type<D: Dim>(&mut self, motion_type: MotionType) -> Result<(), Error> {
         let inertia = motion_type.inertia::<D>(&self.local_shape);
         check_motion_type(motion_type, &self.local_shape, inertia.as_ref())?;
@@ -212,7 +212,7 @@ impl RigidState {
         self.target_rotation
     }
 
-    /// Returns the reactions, one for each substep of the last tick.
+    /// Returns the force and torque on the body in each substep of the last tick.
     pub fn reactions(&self) -> &[ReactionSum] {
         &self.reactions
     }
@@ -262,7 +262,8 @@ impl RigidState {
         }
     }
 
-    /// Starts a tick of `duration` [s], in which the target moves at a constant velocity.
+    /// Starts a tick of `duration` [s]: sets constant velocities with which the target, and the rotation of a
+    /// kinematic or coupled body, reach their goals at the end of the tick.
     pub(crate) fn start_tick(&mut self, duration: f32) {
         (self.position_before, self.rotation_before) = (self.position, self.rotation);
         self.target_velocity = (self.target - self.target_before) * (1.0 / duration);
@@ -275,8 +276,8 @@ impl RigidState {
         self.reactions.clear();
     }
 
-    /// Ends a tick: the target stops, and a body with a target takes the target rotation. A body that is
-    /// non-finite or out of range is reset to its pose at the start of the tick, at rest.
+    /// Ends a tick: the target stops, and a kinematic or coupled body takes its target rotation. A body that
+    /// is non-finite or out of range is reset to its pose at the start of the tick, with velocity 0.
     pub(crate) fn end_tick(&mut self) {
         self.target_before = self.target;
         if self.follows_target() && self.rotation != self.target_rotation {
@@ -293,9 +294,9 @@ impl RigidState {
         }
     }
 
-    /// Moves the target by its velocity over `duration` [s], and starts a new reaction for this substep.
+    /// Starts a substep of `duration` [s]: moves the target by its velocity, and appends an empty reaction.
     /// Accelerates a coupled body towards the target. Gives a kinematic body the velocity with which it
-    /// reaches the target.
+    /// reaches the target in this substep.
     pub(crate) fn pull(&mut self, duration: f32) {
         self.target_before += self.target_velocity * duration;
         let mut reaction = ReactionSum::default();
@@ -330,8 +331,8 @@ impl RigidState {
         self.reactions.push(reaction);
     }
 
-    /// Applies a contact impulse [N s]. Adds its force, averaged over a substep of `duration` [s], to the
-    /// reaction of the substep.
+    /// Applies a contact impulse [N s]. Adds the mean contact force, the impulse divided by the substep
+    /// length `duration` [s], to the reaction of this substep.
     #[inline(always)]
     pub(crate) fn push(&mut self, impulse: Vec3, duration: f32) {
         let inverse_mass = self.inverse_mass();

@@ -59,14 +59,15 @@ impl RigidState {
         check_motion_type(self.motion_type, &self.local_shape, self.inertia.as_ref())
     }
 
-    /// Returns whether a body that was read from a file is valid in a world of `D`.
+    /// Returns whether a body from a snapshot is valid in a world of dimension `D`: its fields are in range,
+    /// and in 2D it lies in the plane.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound<D: Dim>(&self) -> bool {
         self.check().is_ok() && self.clone().seen_in::<D>() == *self
     }
 
-    /// Returns the body restricted to `D`, with derived fields recomputed: in 2D, third coordinates become 0
-    /// and rotations keep only the part about the third axis.
+    /// Returns the body restricted to dimension `D`, with derived fields recomputed: in 2D, third coordinates
+    /// become 0 and rotations keep only the part about the third axis.
     #[cfg(feature = "serde")]
     fn seen_in<D: Dim>(mut self) -> Self {
         self.local_shape = Shape::<D>::of(&self.local_shape).solid();
@@ -99,8 +100,8 @@ pub(crate) fn check_restitution(restitution: f32) -> Result<(), Error> {
     within("restitution", restitution, 0.0, 1.0, "0 to 1")
 }
 
-/// Checks a motion type for a body of the shape `local_shape` in local coordinates, with the moments of inertia of that
-/// shape if the body is dynamic.
+/// Checks the parameters of a motion type, and whether a body of this type may have the shape `local_shape`.
+/// `inertia` is the inertia of this shape if the type is dynamic, otherwise `None`.
 pub(super) fn check_motion_type(
     motion_type: MotionType,
     local_shape: &Solid,

@@ -6,8 +6,8 @@ use crate::math::rotation::Rotation;
 use crate::rigid_body::solid::Solid;
 use glam::Vec3;
 
-/// Shape of a rigid body or a region. In 2D a half-space is bounded by a line, a box is a rectangle, a ball a
-/// disc, and a capsule a bar with round ends.
+/// Shape of a rigid body, or of the region of a query. In 2D a half-space is bounded by a line, a box is a
+/// rectangle, a ball a disc, and a capsule a bar with round ends.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
@@ -37,9 +37,9 @@ pub enum Shape<D: Dim> {
     },
     /// Capsule: all points within `radius` of a segment.
     Capsule {
-        /// First end of the segment [m].
+        /// First end point of the segment [m].
         from: D::Vector,
-        /// Second end of the segment [m].
+        /// Second end point of the segment [m].
         to: D::Vector,
         /// Radius [m].
         radius: f32,
@@ -85,14 +85,14 @@ impl<D: Dim> Shape<D> {
         self.solid().check()
     }
 
-    /// Returns the signed distance of a point from the surface [m], negative inside, and the outward normal
-    /// there.
+    /// Returns the signed distance of a point from the surface [m], negative inside, and the outward unit
+    /// normal at the nearest point of the surface.
     pub fn distance(&self, point: D::Vector) -> (f32, D::Vector) {
         let (distance, normal) = self.solid().distance(point.to_vec3());
         (distance, D::Vector::from_vec3(normal))
     }
 
-    /// Returns the lower and upper corner of the axis-aligned bounding box [m]; that of a half-space is infinite.
+    /// Returns the lower and upper corner of the axis-aligned bounding box [m]; infinite for a half-space.
     pub fn bounds(&self) -> [D::Vector; 2] {
         self.solid().bounds().map(D::Vector::from_vec3)
     }
@@ -102,7 +102,7 @@ impl<D: Dim> Shape<D> {
         self.solid().inradius()
     }
 
-    /// Returns the shape translated `by` [m].
+    /// Returns the shape translated by the vector `by` [m].
     #[must_use]
     pub fn translated(self, by: D::Vector) -> Self {
         Self::of(&self.solid().translated(by.to_vec3()))
@@ -115,7 +115,7 @@ impl<D: Dim> Shape<D> {
         Self::of(&self.solid().rotated(by.seen_in::<D>()))
     }
 
-    /// Returns the shape with three coordinates. In 2D, boxes become unbounded along the third axis, so that
+    /// Converts the shape to three coordinates. In 2D, boxes become unbounded along the third axis, so that
     /// no contact pushes out of the plane.
     pub(crate) fn solid(&self) -> Solid {
         let half_extents = |half: D::Vector| match D::N {
@@ -152,7 +152,7 @@ impl<D: Dim> Shape<D> {
         }
     }
 
-    /// Returns a solid as a shape of the dimension: the inverse of [`Shape::solid`].
+    /// Converts a solid to a shape with the coordinates of dimension `D`; inverse of [`Shape::solid`].
     pub(crate) fn of(solid: &Solid) -> Self {
         let flat = |vector: Vec3| D::Vector::from_vec3(vector);
         match *solid {

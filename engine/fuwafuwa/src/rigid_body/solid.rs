@@ -45,9 +45,9 @@ pub enum Solid {
     },
     /// Capsule: all points within `radius` of a segment.
     Capsule {
-        /// First end of the segment [m].
+        /// First end point of the segment [m].
         from: Vec3,
-        /// Second end of the segment [m].
+        /// Second end point of the segment [m].
         to: Vec3,
         /// Radius [m].
         radius: f32,
@@ -119,9 +119,9 @@ impl Solid {
         }
     }
 
-    /// Returns the signed distance of a point from the surface [m], negative inside, and the outward normal
-    /// there.
-    // Inlined, because passing a point through memory takes as long as the computation.
+    /// Returns the signed distance of a point from the surface [m], negative inside, and the outward unit
+    /// normal at the nearest point of the surface.
+    // Inlined, because a call would pass the point through memory, which takes as long as the computation.
     #[inline(always)]
     pub fn distance(&self, point: Vec3) -> (f32, Vec3) {
         match *self {
@@ -146,8 +146,8 @@ impl Solid {
         }
     }
 
-    /// Returns the axis-aligned bounding box [m]; that of a half-space is infinite. The bounding box of a 2D
-    /// box has thickness 0 along the third axis, although the box itself is unbounded there.
+    /// Returns the axis-aligned bounding box [m]; infinite for a half-space. The bounding box of a 2D box has
+    /// thickness 0 along the third axis, although the box itself is unbounded along this axis.
     pub fn bounds(&self) -> Bounds {
         let around = |from: Vec3, to: Vec3, half: Vec3| {
             let low = [0, 1, 2].map(|axis: usize| from[axis].min(to[axis]) - half[axis]);
@@ -189,7 +189,7 @@ impl Solid {
         }
     }
 
-    /// Returns the shape translated `by` [m].
+    /// Returns the shape translated by the vector `by` [m].
     pub fn translated(self, by: Vec3) -> Self {
         match self {
             Self::HalfSpace { normal, offset } => Self::HalfSpace {
@@ -261,8 +261,9 @@ impl Solid {
     }
 }
 
-/// Returns the distance from an oriented box, like [`distance_from_box`]. Not inlined, because oriented boxes
-/// are rare, and the code would slow down the common shapes.
+/// Returns the signed distance of a point from a rotated box around the origin [m], and the outward normal,
+/// see [`distance_from_box`]. Not inlined: rotated boxes are rare, and the code would slow down the common
+/// shapes.
 #[inline(never)]
 fn distance_from_turned(point: Vec3, half: Vec3, rotation: Rotation) -> (f32, Vec3) {
     let own = rotation.inverse().apply(point);
@@ -270,8 +271,8 @@ fn distance_from_turned(point: Vec3, half: Vec3, rotation: Rotation) -> (f32, Ve
     (distance, rotation.apply(normal))
 }
 
-/// Returns the projection of a half extent [m] onto a world axis. `cosine` is that of the angle between the
-/// box axis and the world axis. Returns 0 for the unbounded third axis of a 2D box.
+/// Returns the length of a half extent [m] of a box projected onto a world axis. `cosine` belongs to the
+/// angle between the box axis and the world axis. Returns 0 for the unbounded third axis of a 2D box.
 fn reach_of(cosine: f32, half: f32) -> f32 {
     match half == f32::MAX {
         true => 0.0,
@@ -279,7 +280,7 @@ fn reach_of(cosine: f32, half: f32) -> f32 {
     }
 }
 
-/// Restricts a vector to the dimension: in 2D its third coordinate becomes 0.
+/// Restricts a vector to dimension `D`: in 2D its third coordinate becomes 0.
 pub(crate) fn flat<D: Dim>(mut vector: Vec3) -> Vec3 {
     if D::N == 2 {
         vector.z = 0.0;
@@ -287,7 +288,7 @@ pub(crate) fn flat<D: Dim>(mut vector: Vec3) -> Vec3 {
     vector
 }
 
-/// Returns the length and the direction of a vector; the direction of a vector of length 0 is upwards.
+/// Returns the length and the direction of a vector; for a zero vector, the direction is +y.
 #[inline]
 fn away(v: Vec3) -> (f32, Vec3) {
     let distance = v.length();
@@ -298,8 +299,8 @@ fn away(v: Vec3) -> (f32, Vec3) {
     }
 }
 
-/// Returns the signed distance of a point from a box around the origin [m], and the outward normal. Inside,
-/// both refer to the nearest face; outside, to the nearest point of the box.
+/// Returns the signed distance of a point from a box around the origin [m], and the outward normal. For a
+/// point inside, both refer to the nearest face; for a point outside, to the nearest point of the box.
 #[inline]
 fn distance_from_box(at: Vec3, half: Vec3) -> (f32, Vec3) {
     let beyond = [0, 1, 2].map(|k: usize| at[k].abs() - half[k]);

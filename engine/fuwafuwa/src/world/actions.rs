@@ -20,9 +20,9 @@ use crate::soft_body::{MAX_GRAVITY_SCALE, SoftBody};
 use glam::Vec3;
 
 impl<D: Dim> World<D> {
-    /// Translates a body `by` [m] at once, through anything in between. Its velocity stays the same, and a
-    /// kinematic or coupled body gets the new pose as its target. The body and sleeping objects in contact
-    /// with it wake. Bookmarks of a soft body stay valid, because only positions change.
+    /// Translates a body by the vector `by` [m] immediately; obstacles do not stop the body. The velocity
+    /// stays the same. A kinematic or coupled body gets the new pose as its target. The body and sleeping
+    /// objects in contact with it wake. Bookmarks of a soft body stay valid, because only positions change.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, or a coordinate is not finite or beyond ±1e6 m.
@@ -43,11 +43,13 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Rotates a body and its velocities about a point [m] at once. Target, waking and bookmarks are handled
-    /// as by [`World::translate`]. In 2D only the rotation about the third axis counts.
+    /// Rotates a body and its velocities about a point [m] immediately; obstacles do not stop the body. A
+    /// kinematic or coupled body gets the new pose as its target. The body and sleeping objects in contact
+    /// with it wake. Bookmarks of a soft body stay valid, because only positions change. In 2D only the part
+    /// of the rotation about the third axis is applied.
     ///
     /// # Errors
-    /// As for [`World::translate`].
+    /// [`Error`] if the handle is stale, or a coordinate of the point is not finite or beyond ±1e6 m.
     pub fn rotate_about(
         &mut self,
         body: impl Into<BodyHandle>,
@@ -78,12 +80,13 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Sets the position [m] of a rigid body, and its rotation from local to world axes, at once. Its
-    /// velocity stays the same, and a kinematic or coupled body gets the new pose as its target. The body and
+    /// Sets the position [m] of a rigid body, and its rotation from local to world axes, immediately. The
+    /// velocity stays the same. A kinematic or coupled body gets the new pose as its target. The body and
     /// sleeping objects in contact with it wake.
     ///
     /// # Errors
-    /// [`Error`] if the handle is stale or the position is out of range. The body then stays unchanged.
+    /// [`Error`] if the handle is stale, or a coordinate is not finite or beyond ±1e6 m. The body then stays
+    /// unchanged.
     #[inline(never)]
     pub fn set_pose(
         &mut self,
@@ -172,7 +175,8 @@ impl<D: Dim> World<D> {
     /// wakes.
     ///
     /// # Errors
-    /// As for [`World::set_velocity`].
+    /// [`Error`] if the handle is stale, the rigid body is not dynamic, or a component is not finite or
+    /// beyond ±1e6.
     pub fn add_velocity(
         &mut self,
         body: impl Into<BodyHandle>,
@@ -277,9 +281,9 @@ impl<D: Dim> World<D> {
     /// ```
     ///
     /// # Errors
-    /// [`Error`] if the handle is stale, or a parameter of the motion type is out of range. Also if the type
-    /// is dynamic, but the shape is unbounded or not centred on its origin. Also if the body holds a knife
-    /// and would no longer be kinematic or coupled.
+    /// [`Error`] if the handle is stale, or a parameter of the motion type is out of range. A dynamic type is an
+    /// error if the shape is unbounded or not centred on its origin. A fixed or dynamic type is an error if the
+    /// body holds a knife.
     #[inline(never)]
     pub fn set_motion_type(
         &mut self,
@@ -421,8 +425,9 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Puts a soft body or a dynamic rigid body to sleep at its present position, at rest. A sleeping body costs next
-    /// to nothing and acts as a wall until something moves against it. [Fixed](SoftBody::fix_node) nodes stop, too.
+    /// Puts a soft body or a dynamic rigid body to sleep at its present position, at rest. A sleeping body
+    /// takes almost no computing time, and acts as an immovable wall until something moves against it.
+    /// [Fixed](SoftBody::fix_node) nodes stop, too.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, or the rigid body is not dynamic.
@@ -516,7 +521,7 @@ impl<D: Dim> World<D> {
         Ok(())
     }
 
-    /// Returns a dynamic rigid body and wakes it.
+    /// Wakes a rigid body and returns it; an error unless the body is dynamic.
     fn dynamic_mut(&mut self, rigid: RigidBodyHandle) -> Result<&mut RigidState, Error> {
         let body = self.rigids.get(rigid)?;
         require(
@@ -529,7 +534,7 @@ impl<D: Dim> World<D> {
         self.rigids.get_mut(rigid)
     }
 
-    /// Restarts the sleep timers of a body.
+    /// Restarts the sleep timers of all pieces of a body.
     fn keep_awake(&mut self, body: SoftBodyHandle) {
         if let Ok(body) = self.bodies.get_mut(body) {
             let pieces = body.pieces_mut().list.iter_mut();

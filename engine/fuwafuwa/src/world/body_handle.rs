@@ -33,7 +33,7 @@ impl From<RigidBodyHandle> for BodyHandle {
 
 /// Handle of an item that [`World::remove`] can remove: a soft body, a rigid body, a joint or a knife.
 pub trait Removable<D: Dim>: Handle {
-    /// Type of the removed item.
+    /// Type that [`World::remove`] returns for a handle of this type.
     type Item;
 
     #[doc(hidden)]
@@ -77,8 +77,8 @@ impl<D: Dim> World<D> {
     /// handles and state, except that some wake: sleeping objects in contact with a removed body, and the
     /// bodies of a removed joint. The rigid body that holds a removed knife stays.
     ///
-    /// A rigid body, a joint or a knife is returned as its definition, which can be added again under a new handle.
-    /// The definition of a joint has its anchors where they were when the joint was added.
+    /// A rigid body, a joint or a knife is returned as its definition, which can be added again under a new
+    /// handle. The definition of a joint contains the anchor positions at which the joint was added.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.

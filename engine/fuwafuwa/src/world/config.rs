@@ -7,20 +7,20 @@ use glam::Vec3;
 
 /// Default tick length [s]; see [`WorldConfig::tick`].
 pub const DEFAULT_TICK: f32 = 1.0 / 60.0;
-/// Minimum number of substeps in 1/60 s, unless [`WorldConfig::max_substeps`] is lower. It gives a
+/// Minimum number of substeps in 1/60 s, unless [`WorldConfig::max_substeps`] is lower. 16 substeps give a
 /// force-feedback device 960 force updates a second.
 pub const DEFAULT_SUBSTEPS: u32 = 16;
 /// Smallest value of [`WorldConfig::max_substeps`]. Half of the default minimum suffices: a soft ball is
 /// squashed no further with 8 substeps than with 16.
 pub const MIN_SUBSTEPS: u32 = 8;
-/// Shortest tick length [s], equal to the interval between two fracture rounds. Each tick has at least one
-/// round, so shorter ticks would change the number of rounds per second.
+/// Shortest tick length [s]. Fracture and damping run at 240 Hz, but at least once per tick, so they would
+/// run too often in shorter ticks.
 pub const MIN_TICK: f32 = 1.0 / 240.0;
-/// Longest tick length [s]. Kinematic targets, embedded spheres and sleep are updated once per tick, and a
-/// longer tick would delay them visibly.
+/// Longest tick length [s]. Kinematic targets, embedded contact spheres and sleep are updated only once per
+/// tick, so longer ticks would delay them visibly.
 pub const MAX_TICK: f32 = 1.0 / 30.0;
-/// Number of times per second that nodes are tested for fracture and that damping is applied: once in four of
-/// the usual 960 substeps. An overloaded node takes about this interval to fail, so testing more often would
+/// Rate at which nodes are tested for fracture and damping is applied [1/s]: once per four substeps at the
+/// usual 960 substeps a second. An overloaded node takes about 1/240 s to fail, so testing more often would
 /// gain little.
 const ROUNDS: f64 = 240.0;
 
@@ -59,17 +59,18 @@ impl<D: Dim> Default for WorldConfig<D> {
 }
 
 impl<D: Dim> WorldConfig<D> {
-    /// Converts a rate per second to a whole number per tick, at least 1.
+    /// Converts a rate [1/s] to a whole number of repetitions per tick, at least 1.
     pub(super) fn in_tick(&self, per_second: f64) -> u32 {
         ((f64::from(self.tick) * per_second + 0.5) as u32).max(1)
     }
 
-    /// Returns the number of fracture and damping rounds per tick.
+    /// Returns how often per tick fracture is tested and damping is applied.
     pub(super) fn rounds(&self) -> u32 {
         self.in_tick(ROUNDS)
     }
 
-    /// Returns the time between two fracture and damping rounds [s].
+    /// Returns the time between two tests for fracture, which is also the time between two applications of
+    /// damping [s].
     pub(super) fn round(&self) -> f32 {
         self.tick / self.rounds() as f32
     }
@@ -79,7 +80,7 @@ impl<D: Dim> WorldConfig<D> {
         self.in_tick(60.0 * f64::from(self.max_substeps))
     }
 
-    /// Returns the shortest substep [s]; bodies that require a shorter one are softened.
+    /// Returns the shortest allowed substep [s]; bodies that require a shorter one are softened.
     pub(super) fn shortest_substep(&self) -> f64 {
         f64::from(self.tick) / f64::from(self.most_in_tick())
     }

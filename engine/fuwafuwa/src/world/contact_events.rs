@@ -13,18 +13,20 @@ use crate::soft_body::SoftBody;
 use glam::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Contacts of a tick, summed by pair. Consecutive contact points mostly belong to the same pair of objects,
-/// so the index of the previous point's pair is cached.
+/// Contacts of a tick, summed by pair of objects.
 struct ContactSums<D: Dim> {
+    /// Index in `list` of each pair.
     places: BTreeMap<[ObjectRef; 2], usize>,
     list: Vec<ContactSum<D>>,
+    /// Pair of the last added contact point, and its index in `list`. Consecutive contact points mostly
+    /// belong to the same pair, so this index saves a look-up.
     last: Option<([ObjectRef; 2], usize)>,
 }
 
-/// Contact of a pair, summed over the points added so far, and the largest normal impulse [N s] among these
-/// points.
+/// Contact of a pair, summed over the contact points added so far.
 struct ContactSum<D: Dim> {
     contact: Contact<D>,
+    /// Largest normal impulse among the added contact points [N s].
     largest: f32,
 }
 
@@ -39,9 +41,9 @@ impl<D: Dim> Default for ContactSums<D> {
 }
 
 impl<D: Dim> ContactSums<D> {
-    /// Adds the normal impulse [N s] of a contact point to the sum of its pair, and keeps the highest approach
-    /// speed [m/s]. `point_and_normal` returns the position [m], and the normal from the second object towards
-    /// the first. It is called only if the impulse is the largest of the pair so far.
+    /// Adds the normal impulse [N s] of a contact point to the sum of its pair, and keeps the highest
+    /// approach speed [m/s]. `point_and_normal` returns the position [m] of the point, and the normal from
+    /// the second object towards the first. It is called only if `impulse` is the largest of the pair so far.
     fn add(
         &mut self,
         objects: [ObjectRef; 2],
@@ -81,7 +83,7 @@ impl<D: Dim> ContactSums<D> {
         }
     }
 
-    /// Returns all contacts, ascending by pair.
+    /// Returns all contacts, ascending by pair of objects.
     fn contacts(self) -> Vec<Contact<D>> {
         let places = self.places.into_values();
         places.map(|place| self.list[place].contact).collect()
@@ -133,7 +135,7 @@ impl<D: Dim> World<D> {
         Ok(contacts.filter(move |contact| {
             let pair = contact.pair;
             pair.iter().any(|&object| selector.contains(object))
-                // Contacts with objects that were removed since the last tick are left out.
+                // Skips contacts with objects that were removed since the last tick.
                 && pair.iter().all(|&object| self.exists(object))
         }))
     }
@@ -188,7 +190,8 @@ impl<D: Dim> World<D> {
     }
 
     /// Compares the contacts of this tick, in ascending order, with those of the previous tick, and reports
-    /// beginnings and ends. A pair without impulses still touches as long as both objects are at rest.
+    /// which contacts started or ended. A pair without contact impulses still touches as long as both objects
+    /// are at rest.
     fn note_changes(&mut self, contacts: Vec<Contact<D>>) {
         let mut before = std::mem::take(&mut self.touching).into_iter().peekable();
         let mut touching = Vec::with_capacity(contacts.len());
@@ -200,7 +203,7 @@ impl<D: Dim> World<D> {
         };
         for contact in contacts {
             let pair = contact.pair;
-            // Contacts of a piece with itself are no events: a folded piece always touches itself.
+            // A piece in contact with itself gives no event, because a folded piece always touches itself.
             if pair[0] == pair[1] {
                 continue;
             }
@@ -255,7 +258,8 @@ impl<D: Dim> World<D> {
         for (body, soft) in self.bodies.entries() {
             let meets = |(_, rigid): &&(_, &RigidState)| rigid.layers.meet(soft.layers());
             let mut met = sensors.iter().filter(meets).peekable();
-            // Bounds of the pieces, shared by all sensors; computed only if some sensor may detect the body.
+            // Bounding boxes of the pieces, shared by all sensors; computed only if at least one sensor may
+            // detect the body.
             let bounds = met.peek().map(|_| piece_bounds(soft));
             for (&(sensor, rigid), bounds) in met.zip(bounds.iter().cycle()) {
                 let found = pieces_within(soft, bounds, rigid.shape());
@@ -276,7 +280,7 @@ impl<D: Dim> World<D> {
         self.inside = inside.into_iter().collect();
     }
 
-    /// Returns the rigid bodies inside a sensor.
+    /// Returns the rigid bodies that overlap a sensor, except fixed bodies and other sensors.
     fn rigids_within(
         &self,
         own: RigidBodyHandle,
@@ -307,8 +311,8 @@ fn piece_bounds<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, Bounds> {
     all
 }
 
-/// Returns the pieces with a node inside a shape. Tests only the nodes of pieces with a box that overlaps the
-/// box of the shape.
+/// Returns the pieces with a node inside a shape. Nodes are tested only for pieces with a bounding box that
+/// overlaps the box of the shape.
 fn pieces_within<D: Dim>(
     body: &SoftBody<D>,
     bounds: &IndexVec<PieceId, Bounds>,
@@ -332,8 +336,9 @@ fn pieces_within<D: Dim>(
     found
 }
 
-/// Returns for each piece whether its box overlaps the box of a shape. The box of the shape is enlarged a
-/// little: because of rounding, a point just outside it can have a negative distance from the shape.
+/// Returns for each piece whether its bounding box overlaps the box of a shape. The box of the shape is
+/// enlarged slightly: because of rounding, a node just outside the box can have a negative distance from the
+/// shape.
 fn pieces_near<D: Dim>(
     bounds: &IndexVec<PieceId, Bounds>,
     [low, high]: Bounds,

@@ -16,7 +16,7 @@ use crate::soft_body::SoftBody;
 use std::ops::Index;
 
 impl<D: Dim> World<D> {
-    /// Adds a soft body. If it is too stiff for the maximum number of substeps, it is softened, see
+    /// Adds a soft body. A body that is too stiff for the maximum number of substeps is softened, see
     /// [`SoftBody::stiffness_scale`].
     #[inline(never)]
     pub fn add_soft_body(&mut self, mut body: SoftBody<D>) -> SoftBodyHandle {
@@ -56,7 +56,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Sets the target rotation of a kinematic or coupled rigid body, which reaches it at the end of the next
-    /// tick. In 2D only the rotation about the third axis counts.
+    /// tick. In 2D only the part of the rotation about the third axis is used.
     ///
     /// # Errors
     /// [`Error`] if the handle is stale, or the body is fixed or dynamic. The target then stays unchanged.
@@ -70,8 +70,8 @@ impl<D: Dim> World<D> {
             .set_target_rotation::<D>(rotation)
     }
 
-    /// Cuts a body along a blade at once, regardless of the strength of its material, and returns the number
-    /// of split nodes. The splits and the detached pieces are among the events until the next tick.
+    /// Cuts a body along a blade immediately, regardless of the strength of its material, and returns the
+    /// number of split nodes. [`World::events`] lists the splits and the detached pieces until the next tick.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -156,12 +156,12 @@ impl<D: Dim> World<D> {
         self.rigids.get(body).map(RigidBodyRef::new)
     }
 
-    /// Iterates over the handles and soft bodies, in the order of their slots.
+    /// Iterates over the handles and soft bodies, in the order of their arena slots.
     pub fn soft_bodies(&self) -> impl Iterator<Item = (SoftBodyHandle, &SoftBody<D>)> + Clone {
         self.bodies.entries()
     }
 
-    /// Iterates over the handles and rigid bodies, in the order of their slots.
+    /// Iterates over the handles and rigid bodies, in the order of their arena slots.
     pub fn rigid_bodies(
         &self,
     ) -> impl Iterator<Item = (RigidBodyHandle, RigidBodyRef<'_, D>)> + Clone {
@@ -169,12 +169,13 @@ impl<D: Dim> World<D> {
         rigids.map(|(id, rigid)| (id, RigidBodyRef::new(rigid)))
     }
 
-    /// Returns the handle of the `n`-th soft body in slot order, counted from 0.
+    /// Returns the handle of soft body number `n`, counted from 0 in the order of [`World::soft_bodies`].
     pub fn nth_soft_body(&self, n: usize) -> Option<SoftBodyHandle> {
         self.bodies.ids().nth(n)
     }
 
-    /// Returns the handle of the `n`-th kinematic or coupled rigid body in slot order, counted from 0.
+    /// Returns the handle of the kinematic or coupled rigid body number `n`, counted from 0 in the order of
+    /// [`World::rigid_bodies`].
     pub fn nth_target_follower(&self, n: usize) -> Option<RigidBodyHandle> {
         let followers = self
             .rigids
@@ -183,7 +184,7 @@ impl<D: Dim> World<D> {
         followers.map(|(id, _)| id).nth(n)
     }
 
-    /// Returns the events of the last tick, and of calls since then.
+    /// Returns the events of the last tick, and of method calls on the world since that tick.
     pub fn events(&self) -> &[Event<D>] {
         &self.events
     }
@@ -193,9 +194,8 @@ impl<D: Dim> World<D> {
         self.ticks
     }
 
-    /// Returns a hash of the whole state: of everything that a snapshot contains, and of nothing else. Except for
-    /// hash collisions, two worlds have the same hash only if they are bit-identical, and then they have the same
-    /// future.
+    /// Returns a hash of the whole state, which is everything that a snapshot contains. Worlds with equal
+    /// hashes are bit-identical, except for hash collisions, and evolve identically.
     #[inline(never)]
     pub fn hash(&self) -> u64 {
         let mut hash = Hash::NONE;
@@ -204,8 +204,9 @@ impl<D: Dim> World<D> {
     }
 
     /// Wakes the pieces in `leaning`, given in ascending order, and the dynamic rigid bodies with bounding
-    /// boxes that overlap one of the boxes `was`. Then wakes everything in contact with them, and so on. The
-    /// AABB test is conservative, so it may wake rigid bodies that were only close.
+    /// boxes that overlap one of the boxes in `was`. Repeats this for objects in contact with the woken ones,
+    /// until no further rigid body wakes. The AABB test is conservative, so it may wake rigid bodies that
+    /// were only close.
     pub(super) fn wake_leaning(&mut self, leaning: Vec<Hit>, was: Vec<Bounds>) {
         let (mut pieces, mut places) = (leaning, was);
         loop {

@@ -35,14 +35,14 @@ impl<D: Dim> World<D> {
         self.knives.get(knife).map(KnifeRef::new)
     }
 
-    /// Iterates over the handles and knives, in the order of their slots.
+    /// Iterates over the handles and knives, in the order of their arena slots.
     pub fn knives(&self) -> impl Iterator<Item = (KnifeHandle, KnifeRef<'_, D>)> + Clone {
         let knives = self.knives.entries();
         knives.map(|(id, knife)| (id, KnifeRef::new(knife)))
     }
 
-    /// Opens the faces between voxels that cutting edges have passed through since the last call, and reports
-    /// the cuts.
+    /// Separates the voxels between which cutting edges have passed since the last call, and reports the
+    /// cuts.
     #[inline(never)]
     pub(super) fn cut_along_edges(&mut self, report: &mut StepReport) {
         let round = self.config.round();
@@ -76,8 +76,8 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Solves the contacts between cutting edges and tissue. Returns the sleeping pieces that the edges hit,
-    /// which the caller wakes.
+    /// Solves the contacts between cutting edges and soft bodies. Returns the sleeping pieces that the edges
+    /// hit; the caller must wake them.
     #[inline(never)]
     pub(super) fn hold_edges(&mut self, duration: f32) -> Vec<Hit> {
         let mut woken = Vec::new();

@@ -48,7 +48,7 @@ impl<'a, D: Dim> Substep<'a, D> {
     }
 
     /// Returns the force and torque on a rigid body in this substep, for force feedback at the substep rate.
-    /// Zero for fixed rigid bodies.
+    /// For a fixed rigid body, both are 0.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
@@ -66,10 +66,10 @@ impl<'a, D: Dim> Substep<'a, D> {
     }
 }
 
-/// Returns a radial field around `centre` [m], for [`Hooks::field`]. It attracts with `strength` [m/s²] up to
-/// the distance `reach` [m], and beyond it with the inverse square of the distance. A negative strength
-/// repels. Closer to the centre than a hundredth of the reach, the field fades to 0. A reach that is not
-/// positive and finite gives a zero field.
+/// Returns a radial acceleration field for [`Hooks::field`]. Up to the distance `reach` [m] from `centre` [m], it
+/// accelerates towards the centre by `strength` [m/s²]; a negative strength repels. Beyond the reach, the
+/// acceleration falls with the inverse square of the distance. Closer to the centre than a hundredth of the
+/// reach, it fades to 0. If the reach is not positive and finite, the field is 0 everywhere.
 ///
 /// ```
 /// use fuwafuwa::{Vec2, field_around};

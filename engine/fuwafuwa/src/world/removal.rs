@@ -14,11 +14,11 @@ use crate::soft_body::SoftBody;
 /// Size threshold for [`World::remove_small_pieces`].
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum PieceSize {
-    /// Number of voxels; pieces with fewer are removed.
+    /// Minimum number of voxels: pieces with fewer voxels are removed.
     Voxels(usize),
-    /// Volume at rest [m³], in 2D that of a sheet 1 m deep; pieces with less are removed.
+    /// Minimum volume of the undeformed piece [m³]: smaller pieces are removed. In 2D, pieces are 1 m deep.
     Volume(f64),
-    /// Mass [kg]; pieces with less are removed.
+    /// Minimum mass [kg]: lighter pieces are removed.
     Mass(f64),
 }
 
@@ -27,7 +27,7 @@ pub enum PieceSize {
 pub struct Removed {
     /// Removed pieces, ascending by body and number.
     pub pieces: Vec<(SoftBodyHandle, PieceId)>,
-    /// Bodies without remaining pieces; they were removed, and their handles are stale.
+    /// Bodies that were removed because all of their pieces were removed; their handles are stale.
     pub soft_bodies: Vec<SoftBodyHandle>,
     /// Removed dynamic rigid bodies.
     pub rigid_bodies: Vec<RigidBodyHandle>,
@@ -37,7 +37,7 @@ pub struct Removed {
 
 impl<D: Dim> World<D> {
     /// Removes a piece of a body with its voxels, elements and nodes. Its contacts end and its joints break.
-    /// Everything else keeps its position and state, but sleepers in contact with the piece wake. Piece
+    /// Everything else keeps its position and state, but sleeping objects in contact with the piece wake. Piece
     /// numbers are never reused. Removing the last piece removes the body, as [`World::remove`] does,
     /// and makes its handle stale.
     ///
@@ -101,9 +101,10 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Removes everything that is outside `region`: pieces without a node in it, as [`World::remove_piece`]
-    /// does, and dynamic rigid bodies that do not overlap it. Fixed, kinematic and coupled rigid bodies stay.
-    /// To remove objects that fall for ever, use the half-space above a plane that is below the lowest floor:
+    /// Removes everything that is outside `region`: pieces without a node in the region, as
+    /// [`World::remove_piece`] does, and dynamic rigid bodies that do not overlap the region. Fixed,
+    /// kinematic and coupled rigid bodies stay. To remove objects that fall for ever, use the half-space
+    /// above a plane that is below the lowest floor:
     ///
     /// ```
     /// use fuwafuwa::{Dim3, RigidBody, Shape, Vec3, World, WorldConfig};
@@ -152,8 +153,8 @@ impl<D: Dim> World<D> {
         Ok(removed)
     }
 
-    /// Removes selected pieces. For each body, `marks` returns a flag per piece number: true if the piece is
-    /// to be removed.
+    /// Removes the pieces that `marks` selects. For each body, `marks` returns a flag per piece number: true
+    /// if the piece is to be removed.
     fn take_out_where(&mut self, marks: impl Fn(&SoftBody<D>) -> Vec<bool>) -> Removed {
         let mut pieces = Vec::new();
         for (id, body) in self.bodies.entries() {
@@ -164,7 +165,8 @@ impl<D: Dim> World<D> {
         self.take_out(&pieces)
     }
 
-    /// Removes existing pieces, given in ascending order.
+    /// Removes pieces, given in ascending order, and wakes the sleeping objects in contact with them. All
+    /// pieces must exist.
     fn take_out(&mut self, pieces: &[(SoftBodyHandle, PieceId)]) -> Removed {
         let mut removed = Removed::default();
         if pieces.is_empty() {
@@ -184,7 +186,7 @@ impl<D: Dim> World<D> {
         removed
     }
 
-    /// Removes pieces of a body, and the body itself if none is left.
+    /// Removes pieces of a body, and the body itself if no piece remains. Adds them to `removed`.
     fn take_out_of(&mut self, id: SoftBodyHandle, pieces: &[PieceId], removed: &mut Removed) {
         let body = self.bodies.at_mut(id.slot());
         let whole = body.total_mass();

@@ -1,8 +1,9 @@
 //! Sleeping of pieces and rigid bodies that have been slow for a while.
 //!
 //! Each piece sleeps and wakes on its own. For all other objects, a sleeping piece is as immovable as a wall.
-//! It wakes when an object in contact with it moves, in any direction. A heap therefore falls asleep from the
-//! ground up while its top still settles, and nothing stays suspended when its support is removed.
+//! A sleeping piece wakes when an object in contact with it moves, in any direction. A heap therefore falls
+//! asleep from the ground up while its top still settles, and nothing stays suspended when its support is
+//! removed.
 
 use crate::contact::solver::Hit;
 use crate::foundation::arena::{BodySlot, RigidSlot};
@@ -13,16 +14,17 @@ use crate::soft_body::SoftBodies;
 use crate::soft_body::damping::PieceMotion;
 use std::collections::BTreeSet;
 
-/// Sleep speed threshold [m/s], as root mean square over the nodes of a piece. A falling body exceeds it
-/// after 3 ms. Higher values let bodies sleep before contact forces have settled; with lower ones, piles take
-/// longer to sleep.
+/// Speed below which an object counts as slow [m/s]: root mean square over the nodes of a piece, or upper
+/// bound over all points of a rigid body. An object that starts to fall exceeds it after 3 ms. At higher
+/// values, bodies sleep before contact forces have settled; at lower values, piles take longer to sleep.
 const SLEEP_SPEED: f64 = 0.03;
-/// Time below the speed threshold until a piece sleeps [s]. At the top of its flight or at the turning points
-/// of a vibration, a body is slow for a shorter time.
+/// Time for which a piece or rigid body must stay slow until it sleeps [s]. At the top of its flight or at
+/// the turning points of a vibration, a body is slow for a shorter time, so it stays awake.
 const SLEEP_TIME: f32 = 0.5;
 
 /// Updates the sleep timers of all pieces, and puts those that reach [`SLEEP_TIME`] to sleep. Pieces in
-/// `handled`, which touch a coupled rigid body, stay awake. Returns the pieces that fell asleep.
+/// `handled` stay awake, because they are embedded in another piece, or because a kinematic or coupled body
+/// pushes or cuts them. Returns the pieces that fell asleep.
 pub fn fall_asleep<D: Dim>(
     bodies: &mut SoftBodies<D>,
     motions: &[IndexVec<PieceId, PieceMotion>],
@@ -48,7 +50,7 @@ pub fn fall_asleep<D: Dim>(
 }
 
 /// Updates the sleep timers of dynamic rigid bodies, and puts those that reach [`SLEEP_TIME`] to sleep. Rigid
-/// bodies in `handled`, which touch a coupled rigid body, stay awake.
+/// bodies in `handled` stay awake, because a moving kinematic or coupled body presses on them.
 pub fn fall_asleep_rigid(rigids: &mut RigidBodies, handled: &BTreeSet<RigidSlot>, duration: f32) {
     for (slot, rigid) in rigids.by_slot_mut() {
         if !rigid.is_dynamic() || rigid.asleep {
@@ -79,8 +81,9 @@ pub fn wake<D: Dim>(bodies: &mut SoftBodies<D>, hits: &[Hit]) -> Vec<Hit> {
     })
 }
 
-/// Puts pieces to sleep or wakes them, as `asleep` says, if `applies` returns true for the body's slot, the
-/// piece number and the piece. Returns the changed pieces.
+/// Puts pieces to sleep if `asleep` is true, otherwise wakes them. Changes only the pieces for which
+/// `applies` returns true, given the body's arena slot, the piece number and the piece. Returns the changed
+/// pieces.
 fn change<D: Dim>(
     bodies: &mut SoftBodies<D>,
     asleep: bool,

@@ -1,4 +1,4 @@
-//! World as it is stored, and the checks after reading it.
+//! Fields of a [`World`] in a snapshot, and the checks after reading them.
 
 use super::{Nearby, World, WorldConfig};
 use crate::contact::joint::{JointState, Joints};
@@ -13,11 +13,11 @@ use crate::query::query_cache::QueryCache;
 use crate::rigid_body::{RigidBodies, RigidState};
 use crate::soft_body::{SoftBodies, SoftBody};
 
-/// Largest tick counter accepted from a stored world. At 60 ticks a second, a world reaches it after some
-/// 6·10⁸ years.
+/// Largest tick counter accepted from a snapshot. At 60 ticks a second, a world reaches it after some 6·10⁸
+/// years.
 const MAX_TICKS: u64 = 1 << 60;
 
-/// Stored fields of a [`World`], in the same order, before any check.
+/// Fields of a [`World`] as read from a snapshot, in the same order as in `World`, not yet checked.
 #[derive(serde::Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct StoredWorld<D: Dim> {
@@ -36,7 +36,7 @@ pub(crate) struct StoredWorld<D: Dim> {
 impl<D: Dim> TryFrom<StoredWorld<D>> for World<D> {
     type Error = Error;
 
-    /// Checks the stored fields, and rebuilds the other ones.
+    /// Checks the fields from a snapshot, and rebuilds the fields that a snapshot does not contain.
     ///
     /// # Errors
     /// [`Error::InvalidSnapshot`] with the violated condition.

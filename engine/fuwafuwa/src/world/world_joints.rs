@@ -8,7 +8,8 @@ use crate::foundation::arena::JointHandle;
 use crate::foundation::dim::{Dim, DimVector};
 
 impl<D: Dim> World<D> {
-    /// Adds a joint between two anchors at their present positions. Both attached bodies wake.
+    /// Adds a joint. Its anchors stay attached to the points of the bodies where the anchors are now. Both
+    /// attached bodies wake.
     ///
     /// # Errors
     /// [`Error`] if a handle is stale or a parameter is out of range.
@@ -37,7 +38,7 @@ impl<D: Dim> World<D> {
         self.joints.get(joint).map(JointRef::new)
     }
 
-    /// Iterates over the handles and joints, in the order of their slots.
+    /// Iterates over the handles and joints, in the order of their arena slots.
     pub fn joints(&self) -> impl Iterator<Item = (JointHandle, JointRef<'_, D>)> + Clone {
         let joints = self.joints.entries();
         joints.map(|(id, joint)| (id, JointRef::new(joint)))
@@ -60,7 +61,7 @@ impl<D: Dim> World<D> {
     /// Removes broken joints, and reports an event for each.
     pub(super) fn part_joints(&mut self, broken: Vec<JointHandle>) {
         for joint in broken {
-            // `broken` may list a joint twice, broken when velocities were solved and again when positions
+            // `broken` may list a joint twice: it broke when velocities were solved, and again when positions
             // were corrected. The second removal fails and is ignored.
             if let Ok(parted) = self.joints.remove(joint) {
                 self.events.push(Event::JointBroke { joint });

@@ -2,10 +2,10 @@
 
 use fuwafuwa::{Blade, Dim, Dim2, Dim3, Vec3};
 
-/// Dimension with a blade.
+/// Dimension in which tests can build a blade, the area along which a body is cut.
 pub trait Blades: Dim {
-    /// Returns the parallelogram with a corner [m] and the edges [m] that begin there. In 2D it is the segment along
-    /// the first edge.
+    /// Returns the parallelogram with the given corner [m] and the two edges [m] that begin at this corner.
+    /// In 2D, the blade is the segment along the first edge.
     fn blade(corner: Vec3, first: Vec3, second: Vec3) -> Blade<Self>;
 }
 

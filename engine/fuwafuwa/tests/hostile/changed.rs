@@ -1,4 +1,4 @@
-//! Changes, additions and removals between two ticks.
+//! Changes, additions and removals of objects between two ticks.
 
 use super::*;
 
@@ -147,7 +147,7 @@ fn removal_keeps_other_handles_valid() {
     assert!(!touched.contains(&(bodies[0], hand(0))), "{touched:?}");
 }
 
-/// The handle of a removed object stays invalid when another object takes its slot.
+/// The handle of a removed object stays invalid when another object takes its arena slot.
 #[test]
 fn stale_handle_is_rejected() {
     let mut world = world::<Dim2>();
@@ -180,8 +180,9 @@ fn stale_handle_is_rejected() {
     step(&mut world, 5);
 }
 
-/// Three cubes sleep on each other and a fourth beside them. When the lowest is removed, only the fourth
-/// sleeps on. The topmost cube must wake at once: the middle cube falls too slowly at first to wake it.
+/// Three cubes sleep in a stack, and a fourth cube sleeps beside the stack. When the lowest cube is removed,
+/// only the fourth cube stays asleep. The topmost cube must wake immediately: at first the middle cube falls
+/// too slowly to wake it.
 #[test]
 fn removal_wakes_only_bodies_in_contact() {
     let mut world = world::<Dim2>();

@@ -60,7 +60,7 @@ fn bar(size: [usize; 2]) -> SoftBody<Dim2> {
     SoftBody::new(grid, &[Material::default()]).unwrap()
 }
 
-/// Returns a weightless world with only two bars that fly towards each other.
+/// Returns a world without gravity that contains only two bars, which fly towards each other.
 fn about_to_meet() -> World<Dim2> {
     let settings = WorldConfig {
         gravity: Vec2::ZERO,
@@ -179,7 +179,8 @@ fn add_rigid_rejects_out_of_range_hand() {
     assert_finite(&world);
 }
 
-/// Runs a world with a tilted rigid shape, soft body and hand, and returns its hash.
+/// Runs a 2D world in which a rigid shape, a soft body and a hand are rotated by `tilt`, and returns the hash
+/// of the world.
 fn hash_of_tilted(shape: Shape<Dim2>, tilt: Rotation) -> u64 {
     let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let below = RigidBody::fixed(shape).with_friction(0.5);
@@ -260,7 +261,7 @@ fn unused_material_has_no_effect() {
     assert_eq!(states_with(&[usual, stiff]), states_with(&[usual]));
 }
 
-/// A cut reports the positions of the released nodes, like a tear, but no released energy.
+/// Checks that a cut reports the positions of the split nodes, as a tear does, but no released energy.
 #[test]
 fn cut_reports_positions_of_released_nodes() {
     let mut world = world::<Dim2>();

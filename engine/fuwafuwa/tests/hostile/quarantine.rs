@@ -1,8 +1,8 @@
-//! Quarantine: a non-finite or too fast piece is stopped at its last valid position.
+//! Quarantine: a non-finite or too fast piece is frozen at its last valid position.
 
 use super::*;
 
-/// A non-finite body is stopped, returned to its last finite position, and reported.
+/// A non-finite body is frozen, reset to its last finite position, and reported.
 #[test]
 fn non_finite_body_is_quarantined() {
     for nowhere in [f32::NAN, f32::INFINITY] {
@@ -28,8 +28,8 @@ fn non_finite_body_is_quarantined() {
     }
 }
 
-/// Regression: the quarantine restored positions by node id, although a release in the same tick had given
-/// ids to other nodes or freed them. Elements were stretched to the origin.
+/// Regression: the quarantine restored positions by node id, although a split in the same tick had freed node
+/// ids or given them to other nodes. Elements were stretched to the origin.
 #[test]
 fn quarantine_restores_positions_of_torn_piece() {
     let mut world = world::<Dim2>();

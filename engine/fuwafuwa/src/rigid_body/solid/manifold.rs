@@ -4,19 +4,19 @@ use super::Solid;
 use super::oriented_box::{Brick, Separation, Side};
 use glam::Vec3;
 
-/// Minimum cosine between the normal of the manifold and the normal of the other shape at an end of a
-/// capsule. The end becomes a contact point if the angle is below 26°. If a capsule lies flat on a face, the
-/// angle is 0.
+/// Cosine of the largest allowed angle, 26°, between the normal of the manifold and the normal of the other
+/// shape at an end of a capsule. At a larger angle, the end is no contact point. The angle is 0 if the
+/// capsule lies flat on a face.
 const ALONG: f32 = 0.9;
-/// Minimum distance between the contact point nearest to the other shape and the contact points at the ends
-/// of a capsule, as a share of the capsule's radius. If an end is closer, the nearest point is left out as a
-/// duplicate.
+/// Distance below which two contact points of a capsule are duplicates, as a share of the capsule's radius.
+/// The point nearest to the other shape is left out if a contact point at an end of the capsule is closer
+/// than this.
 const APART: f32 = 0.5;
 
 /// Contact manifold of two shapes.
 #[derive(Clone, Debug, Default)]
 pub struct Manifold {
-    /// Unit normal from the second shape to the first.
+    /// Common unit normal of all contact points, from the second shape towards the first.
     pub normal: Vec3,
     pub points: Vec<ManifoldPoint>,
 }
@@ -24,12 +24,12 @@ pub struct Manifold {
 /// Contact point of a manifold.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ManifoldPoint {
-    /// Midpoint between both surfaces [m].
+    /// Position of the contact point, midway between both surfaces [m].
     pub at: Vec3,
     /// Distance between both surfaces at the contact point [m], negative if they overlap.
     pub gap: f32,
-    /// Feature key. It stays equal between substeps while the same corners and edges touch, so that the
-    /// solver can start from the previous impulse.
+    /// Identifier of the touching corners or edges. It stays equal between substeps while the same corners
+    /// and edges touch, so that the solver can start from the previous impulse.
     pub key: u32,
 }
 
@@ -59,7 +59,7 @@ impl Solid {
 }
 
 impl Manifold {
-    /// Returns the manifold with the shapes swapped.
+    /// Reverses the normal, as if the two shapes had been swapped.
     fn turned(mut self) -> Self {
         self.normal = -self.normal;
         self
@@ -71,16 +71,17 @@ impl Manifold {
     }
 }
 
-/// Returns the contact point of a ball with a surface below it. The surface has the unit normal `normal`, and
-/// `gap` [m] is its distance from the ball.
+/// Returns the contact point between a ball and a surface. `normal` is the unit normal of the surface at the
+/// point nearest to the ball. `gap` [m] is the distance from the ball to the surface, negative if they
+/// overlap.
 fn beneath(centre: Vec3, normal: Vec3, radius: f32, gap: f32, key: u32) -> ManifoldPoint {
     let at = centre - normal * (radius + 0.5 * gap);
     ManifoldPoint { at, gap, key }
 }
 
-/// Returns the manifold of a capsule with any shape except a ball. Contact points are the point of the
-/// capsule's segment nearest to the other shape, and the ends of the segment; also the ends of the other
-/// shape if it is a capsule.
+/// Returns the manifold of a capsule with any shape except a ball. Possible contact points are the ends of
+/// the capsule's segment, and the point of this segment nearest to the other shape. If the other shape is a
+/// capsule, the ends of its segment are possible contact points, too.
 fn bar(own: &Solid, other: &Solid) -> Manifold {
     let &Solid::Capsule { from, to, radius } = own else {
         return Manifold::default();
@@ -147,13 +148,12 @@ fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
     Manifold { normal, points }
 }
 
-/// Returns the contact points of the box `brick` on a face of the box `ground`. The face is perpendicular to
-/// `axis` and has the outward normal `out`.
+/// Returns the contact points between a face of the box `ground` and the box `brick`. The face is
+/// perpendicular to `axis` and has the outward normal `out`.
 fn on_face(ground: &Brick, axis: usize, out: Vec3, brick: &Brick) -> Vec<ManifoldPoint> {
     let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != axis).collect();
     let level = out.dot(ground.centre) + ground.half[axis];
-    // Face of `brick` that lies on the ground: its normal is the most opposite to the normal of the ground
-    // face.
+    // Selects the face of `brick` that lies on the ground: the face with the normal most opposite to `out`.
     let facing = |k: &usize| brick.axes[*k].dot(out).abs();
     let face = (0..brick.axis_count).max_by(|a, b| facing(a).total_cmp(&facing(b)));
     let face = face.unwrap_or(axis);
@@ -174,7 +174,7 @@ fn on_face(ground: &Brick, axis: usize, out: Vec3, brick: &Brick) -> Vec<Manifol
     polygon.iter().map(point).collect()
 }
 
-/// Returns the corners of a face in order around it, with their keys.
+/// Returns the corners of a face in circular order, each with its corner number as key.
 fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vec3, u32)> {
     let fixed = usize::from(is_upper) << face;
     let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != face).collect();
@@ -189,8 +189,8 @@ fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vec3, u32)> {
         .collect()
 }
 
-/// Clips a polygon (in 2D a segment) by a plane: keeps the part in which the coordinate along `way` is at
-/// most `most` [m].
+/// Clips a polygon (in 2D a segment) by a plane: keeps the part in which the coordinate along the direction
+/// `way` is at most `most` [m]. New corners get a key derived from the clipped edge and `plane`.
 fn clipped(polygon: &[(Vec3, u32)], way: Vec3, most: f32, plane: u32) -> Vec<(Vec3, u32)> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     let is_line = polygon.len() == 2;
@@ -215,7 +215,8 @@ fn clipped(polygon: &[(Vec3, u32)], way: Vec3, most: f32, plane: u32) -> Vec<(Ve
     kept
 }
 
-/// Returns a point on the edge along an axis that is farthest in a direction.
+/// Returns the midpoint of the box edge that is parallel to the axis `along` and lies farthest in the
+/// direction `way`.
 fn edge(brick: &Brick, along: usize, way: Vec3) -> Vec3 {
     let others = (0..brick.axis_count).filter(|&axis| axis != along);
     others.fold(brick.centre, |at, axis| {
@@ -228,7 +229,8 @@ fn edge(brick: &Brick, along: usize, way: Vec3) -> Vec3 {
     })
 }
 
-/// Returns the midpoint between the nearest points of two lines that are not parallel.
+/// Returns the midpoint between the nearest points of two lines that are not parallel: the line through `a`
+/// along the unit vector `along`, and the line through `b` along the unit vector `across`.
 fn between(a: Vec3, along: Vec3, b: Vec3, across: Vec3) -> Vec3 {
     let (apart, cosine) = (b - a, along.dot(across));
     let under = (1.0 - cosine * cosine).max(1e-6);
@@ -291,7 +293,7 @@ mod tests {
             -0.01,
             up,
         );
-        // Boxes in 2D.
+        // Boxes in 2D, one on another and one on the floor.
         let flat = |centre: Vec3| cube(centre, Vec3::new(1.0, 0.5, f32::MAX));
         check(
             flat(Vec3::new(0.4, 0.99, 0.0)),
@@ -301,7 +303,7 @@ mod tests {
             up,
         );
         check(flat(Vec3::new(0.4, 0.49, 0.0)), floor, 2, -0.01, up);
-        // Capsules.
+        // Capsules on the floor, on a box and on another capsule.
         let bar = |y: f32, to: Vec3| {
             Solid::Capsule {
                 from: -to,
@@ -327,7 +329,7 @@ mod tests {
         };
         check(ball, brick, 1, 0.0, up);
         check(bar(1.73, Vec3::X), ball, 1, -0.01, up);
-        // Two crossing edges.
+        // Two boxes that touch at crossing edges.
         let quarter = std::f32::consts::FRAC_PI_4;
         let beam = |axis| cube(Vec3::ZERO, Vec3::ONE).rotated(Rotation::about(axis, quarter));
         let high = beam(Vec3::X).translated(Vec3::new(0.0, 2.0 * 2.0f32.sqrt() - 0.01, 0.0));

@@ -4,10 +4,10 @@ use super::Solid;
 use crate::math::rotation::Rotation;
 use glam::Vec3;
 
-/// Bias of the separating-axis test, as a share of the smallest half extent. A face axis of the second box is
-/// chosen only if its separation exceeds that of the first box's best face axis by the bias. An edge axis is
-/// chosen only if its separation exceeds that of the best face axis by the bias. Faces are preferred because
-/// they give more contact points. The bias keeps resting boxes from switching between axes.
+/// Bias of the separating-axis test, as a share of the smallest half extent of both boxes. A face axis of the
+/// second box is chosen only if its separation exceeds that of the first box's best face axis by more than
+/// the bias. An edge axis must exceed the best face axis of both boxes by more than the bias. Faces are
+/// preferred because they give more contact points. The bias keeps resting boxes from switching between axes.
 const BEHIND: f32 = 0.01;
 
 /// Box with its centre, half extents and axes.
@@ -16,7 +16,7 @@ pub struct Brick {
     pub centre: Vec3,
     pub half: Vec3,
     pub axes: [Vec3; 3],
-    /// Number of bounded axes: 2 for boxes of the plane, otherwise 3.
+    /// Number of bounded axes: 2 in 2D, otherwise 3.
     pub axis_count: usize,
 }
 
@@ -30,19 +30,19 @@ pub struct Separation {
     pub side: Side,
 }
 
-/// Feature that defines a separating axis.
+/// Faces or edges of the boxes that define a separating axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Side {
-    /// Face of the first box, normal to the axis of this number.
+    /// Face of the first box, perpendicular to the box axis with this index.
     First(usize),
-    /// Face of the second box, normal to the axis of this number.
+    /// Face of the second box, perpendicular to the box axis with this index.
     Second(usize),
-    /// Edge of each box, along the axes of these numbers.
+    /// One edge of each box, parallel to the box axis with this index; the first index is of the first box.
     Edges(usize, usize),
 }
 
 impl Brick {
-    /// Returns the box of an axis-aligned or oriented box; `None` for other shapes.
+    /// Converts an axis-aligned or oriented box; `None` for other shapes.
     pub fn of(shape: &Solid) -> Option<Self> {
         let (centre, half, rotation) = match *shape {
             Solid::Box { centre, half } => (centre, half, Rotation::NONE),
@@ -62,13 +62,13 @@ impl Brick {
         })
     }
 
-    /// Returns the extent from the centre along a direction [m].
+    /// Returns the half extent of the box along the unit direction `way` [m].
     pub fn reach(&self, way: Vec3) -> f32 {
         let own = (0..self.axis_count).map(|axis| self.axes[axis].dot(way).abs() * self.half[axis]);
         own.sum()
     }
 
-    /// Returns a corner by number: bit `k` selects the upper side of axis `k`.
+    /// Returns the corner with a number from 0: bit `k` selects the positive side of axis `k`.
     pub fn corner(&self, number: usize) -> Vec3 {
         (0..self.axis_count).fold(self.centre, |at, axis| {
             let sign = if number >> axis & 1 == 1 { 1.0 } else { -1.0 };
@@ -76,12 +76,12 @@ impl Brick {
         })
     }
 
-    /// Returns the number of corners.
+    /// Returns the number of corners: 4 in 2D, otherwise 8.
     pub fn corner_count(&self) -> usize {
         1 << self.axis_count
     }
 
-    /// Returns the separating axis of two boxes.
+    /// Returns the axis along which two boxes are separated most, or overlap least.
     pub fn separation(&self, other: &Self) -> Separation {
         let apart = self.centre - other.centre;
         let along = |way: Vec3, side: Side| {

@@ -4,14 +4,15 @@ use super::oriented_box::Brick;
 use super::{Solid, distance_from_box};
 use glam::Vec3;
 
-/// Number of ternary-search steps for the nearest point of a segment. Each step keeps two thirds of the
-/// interval. After 40 steps, 1e-7 of the segment remains, the resolution of single precision.
+/// Number of ternary-search steps that find the point of a segment nearest to a shape. Each step shrinks the
+/// search interval to two thirds of its length. After 40 steps, 1e-7 of the segment remains, the resolution
+/// of single precision.
 const NARROWINGS: usize = 40;
 
 impl Solid {
-    /// Returns the distance to another shape [m], negative if they overlap, and the unit direction from the
-    /// other shape to this one. The distance is a lower bound between oriented boxes that are nearest at
-    /// their corners.
+    /// Returns the distance to another shape [m], negative if the shapes overlap, and the unit direction from
+    /// the other shape to this one. For two oriented boxes whose nearest points are corners, the distance is
+    /// only a lower bound.
     pub fn gap(&self, other: &Self) -> (f32, Vec3) {
         match (*self, *other) {
             (Self::Ball { centre, radius }, _) => {
@@ -48,21 +49,22 @@ impl Solid {
                 let separation = both.map(|(own, other)| own.separation(&other));
                 separation.map_or((f32::INFINITY, Vec3::Y), |found| (found.gap, found.normal))
             }
-            // Two half-spaces cannot be pushed apart. The infinite distance excludes them from contacts.
+            // Half-spaces are unbounded and cannot be pushed apart. The infinite distance excludes the pair
+            // from contacts.
             (Self::HalfSpace { normal, .. }, Self::HalfSpace { .. }) => (f32::INFINITY, normal),
         }
     }
 }
 
-/// Returns the gap with the shapes swapped.
+/// Reverses the direction, as if the two shapes had been swapped. The distance stays the same.
 fn turned((gap, normal): (f32, Vec3)) -> (f32, Vec3) {
     (gap, -normal)
 }
 
 impl Solid {
-    /// Returns the smallest distance between a segment and the shape [m], the normal at the nearest point,
-    /// and the position of that point on the segment, from 0 to 1. A ternary search is exact enough, because
-    /// along a segment the distance from a convex shape has a single minimum.
+    /// Finds the point of a segment that is nearest to the shape. Returns its distance from the shape [m],
+    /// the outward normal of the shape at this point, and its position on the segment, from 0 to 1. The
+    /// ternary search is valid because the distance from a convex shape has a single minimum along a segment.
     pub(super) fn nearest_of_segment(&self, from: Vec3, to: Vec3) -> (f32, Vec3, f32) {
         let at = |share: f32| self.distance(from + (to - from) * share);
         let (mut low, mut high) = (0.0f32, 1.0f32);
@@ -134,7 +136,7 @@ mod tests {
             0.75,
             up,
         );
-        // Crossing capsules have their nearest points inside their segments.
+        // The nearest points of crossing capsules are inside their segments.
         let [along, across] =
             [Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 2.0)].map(|way: Vec3| (-way, way));
         let above = |k: Vec3| k + up;

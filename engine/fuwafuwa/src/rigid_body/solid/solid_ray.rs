@@ -6,7 +6,8 @@ use glam::Vec3;
 
 impl Solid {
     /// Casts a ray with a unit direction. Returns the distance [m] to the first intersection with the
-    /// surface, from outside or inside, and the outward normal there.
+    /// surface, from outside or inside, and the outward unit normal at this point. Returns `None` if the ray
+    /// misses.
     pub fn ray(&self, from: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         let (begin, way) = (from.as_dvec3(), direction.as_dvec3());
         let crossings: Vec<f64> = match *self {
@@ -32,7 +33,8 @@ impl Solid {
             } => {
                 let ends = [low, high].map(|end| through_ball(from - end, way, radius));
                 let side = through_side(from - low, way, high - low, radius);
-                // Keeps intersections with an end ball only where the ball is on the surface of the capsule.
+                // Part of each end ball is inside the capsule. Only intersections on the surface of the
+                // capsule are kept.
                 let is_bare = |far: &f64| {
                     let at = (begin + way * *far).as_vec3();
                     self.distance(at).0 >= -1e-4 * radius
@@ -50,7 +52,8 @@ impl Solid {
     }
 }
 
-/// Returns the distances at which a ray enters and leaves a box around the origin [m]; none if it misses.
+/// Returns the distances [m] along a ray at which its line enters and leaves a box around the origin,
+/// negative behind the start of the ray. Empty if the line misses the box.
 fn through_box(from: DVec3, way: DVec3, half: Vec3) -> Vec<f64> {
     let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
@@ -71,7 +74,8 @@ fn through_box(from: DVec3, way: DVec3, half: Vec3) -> Vec<f64> {
     }
 }
 
-/// Returns the distances at which a ray enters and leaves a ball around the origin [m]; none if it misses.
+/// Returns the distances [m] along a ray at which its line enters and leaves a ball around the origin,
+/// negative behind the start of the ray. Empty if the line misses the ball.
 fn through_ball(from: Vec3, way: DVec3, radius: f32) -> Vec<f64> {
     let from = from.as_dvec3();
     roots(
@@ -81,8 +85,9 @@ fn through_ball(from: Vec3, way: DVec3, radius: f32) -> Vec<f64> {
     )
 }
 
-/// Returns the distances at which a ray enters and leaves the cylindrical part of a capsule that begins at
-/// the origin [m]; none if it misses.
+/// Returns the distances [m] along a ray at which its line crosses the curved side of a cylinder, negative
+/// behind the start of the ray. The axis of the cylinder runs from the origin to `axis`. Empty if the line
+/// misses.
 fn through_side(from: Vec3, way: DVec3, axis: Vec3, radius: f32) -> Vec<f64> {
     let (from, axis) = (from.as_dvec3(), axis.as_dvec3());
     let squared = axis.dot(axis);
@@ -100,7 +105,7 @@ fn through_side(from: Vec3, way: DVec3, axis: Vec3, radius: f32) -> Vec<f64> {
     far.into_iter().filter(is_between).collect()
 }
 
-/// Returns the roots of a x² + 2 b x + c = 0; none if a is 0.
+/// Returns the real roots of a x² + 2 b x + c = 0; empty unless a is positive.
 fn roots(a: f64, b: f64, c: f64) -> Vec<f64> {
     let under = b * b - a * c;
     match under >= 0.0 && a > 0.0 {
@@ -149,8 +154,8 @@ mod tests {
                 let at = |far: f32| shape.distance(from + way * far);
                 let begins_inside = at(0.0).0 < 0.0;
                 let Some((far, normal)) = shape.ray(from, way) else {
-                    // A ray that misses never crosses the surface, so all its points are on the side of the
-                    // first one.
+                    // A ray that misses never crosses the surface, so all its points are on one side of the
+                    // surface, inside or outside.
                     assert!((0..400).all(|step| (at(0.02 * step as f32).0 < 0.0) == begins_inside));
                     missed += 1;
                     continue;
@@ -167,7 +172,7 @@ mod tests {
             }
         }
         assert!(met > 1100 && missed > 100, "{met} {missed}");
-        // Large distances, and a grazing ray.
+        // Rays that start far away, and a ray that meets the floor at a small angle.
         let floor = Solid::half_space(Vec3::Y, Vec3::ZERO);
         assert_eq!(
             floor
