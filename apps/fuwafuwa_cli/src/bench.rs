@@ -249,7 +249,8 @@ fn scene_in<D: Dim>(name: &str, scene: &Scene, progress: &Progress) -> Result<Ve
     Ok(measures)
 }
 
-/// Measures the ticks in which a hand presses a soft ball on the floor down by about a third of its height.
+/// Measures the ticks in which a hand squashes a soft ball, which lies on the floor, by about a third of its
+/// height.
 fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
     const TICKS: u16 = 60;
     let mut world = World::<D>::new(WorldConfig::default())?;

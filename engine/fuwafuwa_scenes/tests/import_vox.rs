@@ -259,7 +259,7 @@ fn decode_survives_deeply_nested_chunks() {
 
 #[test]
 fn decode_rejects_truncated_model_at_every_length() {
-    // The length that the chunk MAIN states reveals every missing byte.
+    // The chunk MAIN holds the length of the file, so every missing byte is noticed.
     let bytes = full();
     for length in 0..bytes.len() {
         match import(&bytes[..length]).unwrap_err() {

@@ -27,7 +27,7 @@ use tamaire_play::{AnyRound, Route};
 
 /// Number of moments in a strip.
 const MOMENTS: usize = 12;
-/// Number of columns of a strip.
+/// Number of columns of a film strip, a picture of several moments.
 const COLUMNS: usize = 4;
 /// Ticks from one frame of an animation or clip to the next.
 const PACE: usize = 3;

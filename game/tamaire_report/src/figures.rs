@@ -186,8 +186,8 @@ pub struct Bin {
 /// Routes of the first and the second win of visits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Switching {
-    /// Visits by the route of their second win, for each route of the first win: squeeze, shave, mix. `all`
-    /// includes visits that did not win again.
+    /// One table for each route of the first win: squeeze, shave, mix. The table counts visits by the route of
+    /// their second win; its field `all` includes visits that did not win again.
     pub after: [Wins; 3],
     /// Number of visits whose second win took another route than the first.
     pub switched: u64,

@@ -162,8 +162,8 @@ fn changed(
 mod tests {
     use super::*;
 
-    /// Reads a file of the repository. Adds an unreleased change to the changelog, which has none right after
-    /// a release.
+    /// Reads a file of the repository. In the text of the changelog, adds an unreleased change, because the
+    /// tests need one and the file has none right after a release.
     fn read(path: &str) -> std::io::Result<String> {
         let text = fs::read_to_string(root().join(path))?;
         let news = format!("{UNRELEASED}\n### Added\n\n- Something.\n");

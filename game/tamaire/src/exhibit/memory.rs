@@ -152,8 +152,8 @@ impl Memory {
         Some(replays.map(Arc::new).collect())
     }
 
-    /// Advances by a frame of `seconds` [s]: handles storage events, repeats queries, and checks the clock
-    /// and the recorder. Makes clips while the stand is idle.
+    /// Advances by a frame of `seconds` [s]: handles storage events, repeats the queries to the logbook, and
+    /// checks the clock and the recorder. Makes clips of replays while the stand is idle.
     pub fn pass(&mut self, config: &Config, is_idle: bool, seconds: f32) {
         for news in self.clips.pass(seconds) {
             match news {

@@ -102,8 +102,8 @@ impl Game {
         Some(State { contact, manner })
     }
 
-    /// Returns the force on an idle stick that attracts visitors: one slow circle in each period. `None` in
-    /// the rest of the period.
+    /// Returns the force that moves an idle stick in order to attract visitors. Once every `CALLS` seconds the
+    /// stick moves in a slow circle; between the circles the result is `None`.
     fn call(&self) -> Option<State> {
         let share = self.time % CALLS / CALL;
         let (sin, cos) = (std::f64::consts::TAU * share).sin_cos();

@@ -8,7 +8,7 @@ use crate::shell::{Failure, file_error, lacking, output_of, root};
 use std::fs;
 use std::path::Path;
 
-/// Libraries of compilers that Windows lacks. A program for players must not require them.
+/// Names of compiler libraries that are not part of Windows. A program for players must not require them.
 const NOT_THERE: [&str; 4] = ["libgcc", "libstdc++", "libwinpthread", "libssp"];
 
 /// Builds and packs both programs.
