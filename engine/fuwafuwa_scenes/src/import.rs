@@ -18,4 +18,4 @@ pub use self::error::{
 pub use self::file::MAX_FILE_BYTES;
 pub use self::note::{Import, ImportNote, NoteKind};
 pub use self::png::{MAX_PIXELS, Picture, png};
-pub use self::vox::{MAX_VOXELS_ACROSS, Model, vox};
+pub use self::vox::{MAX_MODEL_VOXELS, MAX_VOXELS_ACROSS, Model, vox};
