@@ -41,9 +41,9 @@ pub enum NoteKind {
         /// Number of frames that were left out.
         left_out: usize,
     },
-    /// Models overlap. One of them decides the material of each voxel in the overlap.
+    /// Models of different colours overlap. One of them decides the material of each voxel in the overlap.
     Overlap {
-        /// Number of voxels that lie in more than one model.
+        /// Number of voxels for which the models have different colours.
         voxels: usize,
     },
     /// The solid voxels do not hang together: the body falls apart at once.
@@ -136,8 +136,10 @@ impl fmt::Display for NoteKind {
                     "only the first frame is taken; {left_out} more frames are left out"
                 )
             }
-            Self::Overlap { voxels: 1 } => write!(f, "models overlap in 1 voxel"),
-            Self::Overlap { voxels } => write!(f, "models overlap in {voxels} voxels"),
+            Self::Overlap { voxels } => {
+                let unit = if voxels == 1 { "voxel" } else { "voxels" };
+                write!(f, "models of different colours overlap in {voxels} {unit}")
+            }
             Self::Pieces { pieces, touch } => {
                 let how = match touch {
                     true => "some touch only along edges or at corners, which does not hold",
