@@ -243,9 +243,12 @@ impl Model {
         }
         let (solid, disputed) = assemble(&content.models, &placed.models)?;
         if solid.voxels.is_empty() {
-            let what = match placed.hidden {
-                0 => "solid voxel in the models of the file",
-                _ => "solid voxel in the visible models of the file; others are hidden",
+            let what = match (part, placed.hidden + placed.unplaced) {
+                (Some(_), _) => "solid voxel in this part of the file",
+                (None, 0) => "solid voxel in the models of the file",
+                (None, _) => {
+                    "solid voxel in the visible models of the file; others are hidden or not in its scene"
+                }
             };
             return Err((FilePosition::File, Problem::Empty(what)));
         }

@@ -59,7 +59,7 @@ pub struct BodyText {
     /// Number of voxels across, required for a shape. For a silhouette, the maximum number on the longer
     /// side; not allowed for a model.
     pub n: Option<usize>,
-    /// Width of the grid [m]; for a file, length of the longest side of what is solid in it. Default 1.
+    /// Width of the grid [m]; for a file, length of the longest side of its solid part. Default 1.
     pub width: f32,
     /// Number of voxels on each axis in multiples of `n`, e.g. [3.0, 1.0, 1.0]; only for a box or an empty
     /// grid.
