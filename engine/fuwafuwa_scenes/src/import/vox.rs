@@ -322,11 +322,10 @@ impl<'a> Content<'a> {
         while !chunks.bytes.is_empty() {
             let chunk = chunks.chunk()?;
             match &chunk.name {
+                b"SIZE" if pending.is_none() => pending = Some(chunk.size()?),
                 b"SIZE" => {
-                    if pending.replace(chunk.size()?).is_some() {
-                        let found = "a second chunk SIZE";
-                        return Err(unexpected(chunk.place, "a chunk XYZI after SIZE", found));
-                    }
+                    let found = "a second chunk SIZE";
+                    return Err(unexpected(chunk.place, "a chunk XYZI after SIZE", found));
                 }
                 b"XYZI" => {
                     let none = || unexpected(chunk.place, "a chunk SIZE before it", "none");
