@@ -7,6 +7,7 @@
 mod colours;
 mod error;
 mod file;
+mod note;
 mod png;
 mod vox;
 
@@ -15,5 +16,6 @@ pub use self::error::{
     FilePosition, ImportError, PositionedProblem, Problem, in_file, too_large, unexpected,
 };
 pub use self::file::MAX_FILE_BYTES;
+pub use self::note::{Import, ImportNote, NoteKind};
 pub use self::png::{MAX_PIXELS, Picture, png};
-pub use self::vox::{MAX_VOXELS_ACROSS, Model, vox};
+pub use self::vox::{MAX_MODEL_VOXELS, MAX_VOXELS_ACROSS, Model, vox};

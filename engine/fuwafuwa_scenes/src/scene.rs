@@ -67,7 +67,8 @@
 //! every key that was renamed since is still accepted under its old name.
 //!
 //! [`Picture::grid`](crate::import::Picture::grid) and [`Model::grid`](crate::import::Model::grid) document
-//! how pictures and models become voxels.
+//! how pictures and models become voxels. All visible models of a .vox file become one body; `model = "head"`
+//! takes only the part that is called so in MagicaVoxel. [`Scene::notes`] tells what was left out.
 
 mod body;
 mod budget;
@@ -92,6 +93,7 @@ pub use rigid_body::{MotionTypeText, RigidBodyText};
 pub(crate) use shapes::set_hand_targets;
 pub use shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
 
+use crate::import::ImportNote;
 use budget::Budget;
 use error::{FieldError, Origin, require, vector_of};
 use fuwafuwa::{DEFAULT_TICK, Dim, MIN_TICK, Material, Shape, World, WorldConfig};
@@ -349,10 +351,17 @@ impl Scene {
         let mut budget = Budget::of_scene(MAX_VOXELS);
         // Skips bodies beyond the limit: the build rejects the scene because of them.
         for (index, body) in self.body.iter_mut().enumerate().take(MAX_BODIES) {
-            let embedded = body.embed_file(fetch, &mut budget);
-            embedded.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;
+            let notes = body.embed_file(fetch, &mut budget);
+            let notes = notes.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;
+            self.origin.notes.extend(notes);
         }
         Ok(())
+    }
+
+    /// Returns notes on the files that [`Scene::embed_files`] embedded: what was left out of them or may
+    /// surprise. Programs show them where the user looks. Two scenes can be equal although their notes differ.
+    pub fn notes(&self) -> &[ImportNote] {
+        &self.origin.notes
     }
 
     /// Returns the materials, number 1 first.

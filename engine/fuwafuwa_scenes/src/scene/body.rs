@@ -44,6 +44,9 @@ pub struct BodyText {
     /// File in place of a shape: a silhouette (.png, in 2D) or a MagicaVoxel model (.vox, in 3D). The path is
     /// relative to the folder of the scene.
     pub file: Option<String>,
+    /// Name of the part of a MagicaVoxel file that becomes the body: a model or a group. Default: all visible
+    /// models. Removed when the part is embedded.
+    pub model: Option<String>,
     /// Content of `file` in base64, once it is embedded.
     pub content: Option<String>,
     /// List of voxels in place of a shape.
@@ -56,7 +59,7 @@ pub struct BodyText {
     /// Number of voxels across, required for a shape. For a silhouette, the maximum number on the longer
     /// side; not allowed for a model.
     pub n: Option<usize>,
-    /// Width of the grid [m]; for a file, length of its longest side. Default 1.
+    /// Width of the grid [m]; for a file, length of the longest side of its solid part. Default 1.
     pub width: f32,
     /// Number of voxels on each axis in multiples of `n`, e.g. [3.0, 1.0, 1.0]; only for a box or an empty
     /// grid.
@@ -270,6 +273,7 @@ impl Default for BodyText {
         Self {
             shape: None,
             file: None,
+            model: None,
             content: None,
             voxels: None,
             state: None,

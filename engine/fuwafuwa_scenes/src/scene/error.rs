@@ -1,6 +1,6 @@
 //! Errors of scenes, with their position in the file.
 
-use crate::import::ImportError;
+use crate::import::{ImportError, ImportNote};
 use fuwafuwa::{Dim, DimVector, Vec3};
 use std::collections::BTreeMap;
 use toml::Spanned;
@@ -183,13 +183,15 @@ pub(super) fn vector_of<D: Dim>(field: &str, numbers: [f32; 3]) -> Result<D::Vec
     Ok(D::Vector::from_vec3(Vec3::from(numbers)))
 }
 
-/// Source of a scene: its name and the lines of its values. All origins compare equal, because they are not
+/// Source of a scene: its name, the lines of its values and notes on its files. All origins compare equal, because they are not
 /// part of a scene's content.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Origin {
     pub(super) name: String,
     /// Line numbers by path, as in `body.2.n`.
     lines: BTreeMap<String, usize>,
+    /// Notes on the files that were embedded.
+    pub(super) notes: Vec<ImportNote>,
 }
 
 impl PartialEq for Origin {
@@ -209,8 +211,10 @@ impl Origin {
     }
 
     pub(super) fn named(name: &str) -> Self {
-        let (name, lines) = (name.into(), BTreeMap::new());
-        Self { name, lines }
+        Self {
+            name: name.into(),
+            ..Self::default()
+        }
     }
 
     pub(super) fn error(&self, wrong: FieldError) -> SceneError {

@@ -17,6 +17,12 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
     let good = text.width > 0.0 && text.width.is_finite();
     let expected = format!("expected a positive number of metres, found {}", text.width);
     require(good, "width", expected)?;
+    let is_model = text
+        .file
+        .as_ref()
+        .is_some_and(|file| extension_of(file) == "vox");
+    let expected = "only a .vox file has parts with names";
+    require(text.model.is_none() || is_model, "model", expected)?;
     let mut voxels = match (text.shape, &text.file, &text.voxels) {
         (Some(form), None, None) => of_form::<D>(text, form, budget)?,
         (None, Some(file), None) => of_file::<D>(text, file, budget)?,
@@ -218,8 +224,11 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
             let expected = "the palette indices of a model are its materials, see colours";
             require(text.material.is_none(), "material", expected)?;
             let bytes = text.file_bytes()?;
-            let model = Model::decode(&name, &bytes).map_err(FieldError::file)?;
+            let model = Model::decode_part(&name, &bytes, text.model.as_deref());
+            let model = model.map_err(FieldError::file)?;
+            budget.take_model(model.work())?;
             let grid = model.grid(1.0, &colours).map_err(FieldError::file)?;
+            budget.check_model(grid.size())?;
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| solid))
         }
         _ => {
