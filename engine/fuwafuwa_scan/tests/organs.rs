@@ -2,7 +2,6 @@
 
 mod phantom;
 
-use fuwafuwa::Dim3;
 use fuwafuwa_scan::{Options, Organ, OrganError, Scan, Segmentation};
 use fuwafuwa_scenes::import::{Model, vox};
 use phantom::{File, RAS, ball, organ};
