@@ -8,6 +8,7 @@ mod colours;
 mod content;
 mod error;
 mod file;
+mod note;
 mod png;
 mod vox;
 
@@ -17,5 +18,6 @@ pub use self::error::{
     FilePosition, ImportError, PositionedProblem, Problem, in_file, too_large, unexpected,
 };
 pub use self::file::MAX_FILE_BYTES;
+pub use self::note::{Import, ImportNote, NoteKind};
 pub use self::png::{MAX_PIXELS, Picture, png};
 pub use self::vox::{MAX_VOXELS_ACROSS, Model, vox};
