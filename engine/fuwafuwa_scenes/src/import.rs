@@ -1,4 +1,4 @@
-//! Shapes from files: a silhouette from PNG ([`png()`]), a model from MagicaVoxel ([`vox()`]).
+//! Shapes from files: a silhouette from a picture ([`picture()`]), a model from MagicaVoxel ([`vox()`]).
 //!
 //! Files are untrusted. For any bytes, the result is a grid or an [`ImportError`] that names the file, the
 //! position in it and what was expected. Every size is compared with its limit and with the length of the
@@ -6,9 +6,14 @@
 
 mod colours;
 mod content;
+mod drawing;
 mod error;
 mod file;
+mod mask;
 mod note;
+mod paper;
+mod photo;
+mod picture;
 mod png;
 mod vox;
 
@@ -19,5 +24,6 @@ pub use self::error::{
 };
 pub use self::file::MAX_FILE_BYTES;
 pub use self::note::{Import, ImportNote, NoteKind};
-pub use self::png::{MAX_PIXELS, Picture, png};
+pub(crate) use self::picture::png_of;
+pub use self::picture::{MAX_PIXELS, Picture, PictureOptions, picture};
 pub use self::vox::{MAX_VOXELS_ACROSS, Model, vox};

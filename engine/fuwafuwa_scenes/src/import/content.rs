@@ -160,15 +160,15 @@ impl FileType {
             .unwrap_or(Unknown)
     }
 
-    /// Returns whether the file is a text in UTF-8.
-    pub fn is_text(self) -> bool {
-        let texts = [Toml, Json, Text, Obj, Gltf, Svg, Html, Xml, GitLfsPointer];
-        texts.contains(&self)
+    /// Returns whether the file may be a text in UTF-8 such as a scene, perhaps with mistakes: not markup and
+    /// not a Git LFS pointer.
+    pub fn is_plain_text(self) -> bool {
+        matches!(self, Empty | Toml | Json | Text | Obj)
     }
 
     /// Returns whether the file is a picture that [`super::Picture`] reads.
     pub fn is_readable_picture(self) -> bool {
-        self == Png
+        matches!(self, Png | Jpeg | WebP | Gif | Bmp)
     }
 
     fn words(self) -> &'static str {

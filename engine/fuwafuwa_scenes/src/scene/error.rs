@@ -1,6 +1,6 @@
 //! Errors of scenes, with their position in the file.
 
-use crate::import::ImportError;
+use crate::import::{ImportError, ImportNote};
 use fuwafuwa::{Dim, DimVector, Vec3};
 use std::collections::BTreeMap;
 use toml::Spanned;
@@ -190,6 +190,8 @@ pub(super) struct Origin {
     pub(super) name: String,
     /// Line numbers by path, as in `body.2.n`.
     lines: BTreeMap<String, usize>,
+    /// Notes of the files that were embedded.
+    pub(super) notes: Vec<ImportNote>,
 }
 
 impl PartialEq for Origin {
@@ -209,8 +211,11 @@ impl Origin {
     }
 
     pub(super) fn named(name: &str) -> Self {
-        let (name, lines) = (name.into(), BTreeMap::new());
-        Self { name, lines }
+        let name = name.into();
+        Self {
+            name,
+            ..Self::default()
+        }
     }
 
     pub(super) fn error(&self, wrong: FieldError) -> SceneError {
