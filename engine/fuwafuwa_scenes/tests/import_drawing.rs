@@ -128,7 +128,7 @@ fn overlap(a: &VoxelGrid<Dim2>, b: &VoxelGrid<Dim2>) -> f64 {
 
 #[test]
 fn import_gives_same_body_with_any_margin() {
-    let bodies = [[120, 120], [240, 240], [1240, 1754]].map(|size| {
+    let bodies = [[120, 120], [240, 240], [720, 1020]].map(|size| {
         let mut sheet = Sheet::new(size, WHITE);
         let middle = size.map(|side| (side / 2) as f64);
         sheet.disc(BLACK, middle, 60.0);
@@ -155,9 +155,13 @@ fn import_fills_closed_outline_unless_fill_is_off() {
 
     let hollow = sheet.import(60, false);
     assert!(!hollow.grid.is_solid([30, 30, 0]));
-    // The pen is thinner than half of the 2.5 voxels to which it is thickened at most.
-    let ring = disc(60.0) - disc(55.0);
-    assert!(count(&hollow.grid) < 1.3 * ring, "{}", count(&hollow.grid));
+    // The pen is 1.2 voxels wide and becomes 2 voxels wide.
+    let ring = disc(60.0) - disc(56.0);
+    assert!(
+        (count(&hollow.grid) / ring - 1.0).abs() < 0.3,
+        "{}",
+        count(&hollow.grid)
+    );
     let pieces = NoteKind::Pieces {
         pieces: 3,
         touch: false,
@@ -179,12 +183,12 @@ fn import_closes_gap_of_one_voxel_before_it_fills() {
 
 #[test]
 fn import_thickens_pen_thinner_than_a_voxel() {
-    // Pens of 2 pixels, voxels of 45, at all angles and places.
-    for k in 0..24 {
-        let angle = f64::from(k) * 0.13;
-        let (along, up) = (450.0 * angle.cos(), 450.0 * angle.sin());
-        let mut sheet = Sheet::new([1100, 1100], WHITE);
-        let middle = [550.0 + f64::from(k), 550.0];
+    // Pens of 2 pixels, voxels of 25, at all angles and places.
+    for k in 0..12 {
+        let angle = f64::from(k) * 0.26;
+        let (along, up) = (250.0 * angle.cos(), 250.0 * angle.sin());
+        let mut sheet = Sheet::new([600, 600], WHITE);
+        let middle = [300.0 + f64::from(k), 300.0];
         let to = [middle[0] + along, middle[1] - up];
         sheet.line(BLACK, [middle[0] - along, middle[1] + up], to, 2.0);
         let body = sheet.import(20, true);
@@ -197,8 +201,8 @@ fn import_thickens_pen_thinner_than_a_voxel() {
 
 #[test]
 fn import_of_photo_gives_body_of_drawing() {
-    let mut clean = Sheet::new([900, 1200], WHITE);
-    clean.figure(BLACK, [450.0, 600.0], 700.0, 9.0);
+    let mut clean = Sheet::new([600, 800], WHITE);
+    clean.figure(BLACK, [300.0, 400.0], 500.0, 7.0);
     let clean = clean.import(64, true);
     assert_eq!(clean.notes, []);
     // Head and body of 0.4 of the height each, which overlap in nothing, and four limbs.
@@ -212,13 +216,13 @@ fn import_of_photo_gives_body_of_drawing() {
         (blue, [175.0, 205.0, 238.0], true),
         (grey, [225.0, 230.0, 238.0], false),
     ] {
-        let mut sheet = Sheet::new([900, 1200], paper);
+        let mut sheet = Sheet::new([600, 800], paper);
         // Ruled lines of a page that is turned a little.
         sheet.paint(faint, |x, y| {
             let across = is_squared && (x - 0.05 * y).rem_euclid(40.0) < 2.0;
             across || (y + 0.05 * x).rem_euclid(40.0) < 2.0
         });
-        sheet.figure(ink, [450.0, 600.0], 700.0, 9.0);
+        sheet.figure(ink, [300.0, 400.0], 500.0, 7.0);
         sheet.photographed(0.5, 5.0);
         let body = sheet.import(64, true);
         let shared = overlap(&clean.grid, &body.grid);

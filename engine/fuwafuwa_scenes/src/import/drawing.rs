@@ -9,11 +9,10 @@ const DETAIL: usize = 8;
 const SPECK: f64 = 0.25;
 /// Radius by which outlines are closed before they are filled [voxels]. Gaps of twice this width close.
 const CLOSED: f64 = 0.6;
-/// Radius of the disc that fits into a stroke which needs no thickening [voxels].
-const THICK: f64 = 0.5;
-/// Radius by which thin strokes are thickened [voxels]. A stroke then covers at least half of some voxel
-/// wherever it lies.
-const THICKENED: f64 = 0.75;
+/// Rounds in which strokes are thickened: radius of the disc that does not fit into a stroke which is too thin,
+/// and radius by which the stroke then grows [voxels]. A stroke 1.5 voxels wide holds at any angle: the voxels
+/// of which it covers at least half share edges.
+const THICKENED: [(f64, f64); 2] = [(0.375, 0.8), (0.75, 0.4)];
 /// Share of the edge of a picture along which something lies that is not part of the drawing, such as a table
 /// below the paper.
 const SURROUNDING: f64 = 0.2;
@@ -110,13 +109,20 @@ fn held(ink: Mask, across: usize, fill: bool) -> Mask {
     if keeps_pixels {
         return solid;
     }
-    let thick = solid.clone().eroded(THICK * voxel).dilated(THICK * voxel);
-    let thin = solid.clone().and(&thick.inverted());
+    let thicker =
+        |solid: Mask, (thin, by): (f64, f64)| thickened(solid, voxel, thin * voxel, by * voxel);
+    THICKENED.into_iter().fold(solid, thicker)
+}
+
+/// Returns a mask with its strokes grown by a radius `by`, if a disc of radius `thin` does not fit into them
+/// [pixels].
+fn thickened(solid: Mask, voxel: f64, thin: f64, by: f64) -> Mask {
+    // The discs are larger by a pixel and a half, because discs of pixels do not fit exactly along edges.
+    let thick = solid.clone().eroded(thin).dilated(thin + 1.5);
+    let strokes = solid.clone().and(&thick.inverted()).components();
     // Corners of thick parts are thin, too, but short.
-    let strokes = thin
-        .components()
-        .kept(thin.size, |component| component.longer() as f64 > voxel);
-    solid.or(&strokes.dilated(THICKENED * voxel))
+    let strokes = strokes.kept(solid.size, |component| component.longer() as f64 > voxel);
+    solid.or(&strokes.dilated(by))
 }
 
 /// Returns ink with everything that the paper around it cannot reach, if gaps of twice `radius` [pixels] are
