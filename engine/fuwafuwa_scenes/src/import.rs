@@ -26,4 +26,4 @@ pub use self::file::MAX_FILE_BYTES;
 pub use self::note::{Import, ImportNote, NoteKind};
 pub(crate) use self::picture::png_of;
 pub use self::picture::{MAX_PIXELS, Picture, PictureOptions, picture};
-pub use self::vox::{MAX_VOXELS_ACROSS, Model, vox};
+pub use self::vox::{MAX_MODEL_VOXELS, MAX_VOXELS_ACROSS, Model, vox};

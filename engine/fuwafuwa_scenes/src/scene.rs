@@ -69,7 +69,8 @@
 //! every key that was renamed since is still accepted under its old name.
 //!
 //! [`Picture::import`](crate::import::Picture::import) and [`Model::grid`](crate::import::Model::grid) document
-//! how pictures and models become voxels.
+//! how pictures and models become voxels. All visible models of a .vox file become one body; `model = "head"`
+//! takes only the part that is called so in MagicaVoxel. [`Scene::notes`] tells what was left out.
 
 mod body;
 mod budget;
@@ -361,8 +362,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Returns notes on the files that [`Scene::embed_files`] embedded. Programs show them where the user
-    /// looks.
+    /// Returns notes on the files that [`Scene::embed_files`] embedded: what was left out of them or may
+    /// surprise. Programs show them where the user looks. Two scenes can be equal although their notes differ.
     pub fn notes(&self) -> &[ImportNote] {
         &self.origin.notes
     }

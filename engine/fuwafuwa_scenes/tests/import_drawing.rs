@@ -264,6 +264,24 @@ fn import_tells_of_specks_and_loose_pieces() {
 }
 
 #[test]
+fn speck_far_away_does_not_coarsen_drawing() {
+    let mut sheet = Sheet::new([900, 900], WHITE);
+    // A frame of 128 pixels with a dot of 6 pixels in it, which is 3 voxels wide.
+    sheet.line(BLACK, [40.0, 40.0], [168.0, 40.0], 4.0);
+    sheet.line(BLACK, [40.0, 40.0], [40.0, 168.0], 4.0);
+    sheet.disc(BLACK, [120.0, 120.0], 3.0);
+    let alone = sheet.import(64, false);
+    sheet.disc(BLACK, [880.0, 880.0], 1.5);
+    let beside_speck = sheet.import(64, false);
+    assert_eq!(materials(&beside_speck.grid), materials(&alone.grid));
+    assert_eq!(beside_speck.notes[0].kind, NoteKind::Specks { left_out: 1 });
+    assert!(matches!(
+        alone.notes[0].kind,
+        NoteKind::Pieces { pieces: 2, .. }
+    ));
+}
+
+#[test]
 fn error_of_blank_paper_names_missing_line() {
     let mut sheet = Sheet::new([300, 400], [240.0, 240.0, 225.0]);
     sheet.photographed(0.5, 4.0);

@@ -1,6 +1,6 @@
 //! Drawings: closed outlines become solid, and thin strokes become thick enough to hold.
 
-use super::mask::{Component, Mask};
+use super::mask::{Component, Extent, Mask, longer};
 use super::note::NoteKind;
 
 /// Maximum number of pixels per voxel at which shapes are worked on.
@@ -31,7 +31,7 @@ pub(super) struct Solid {
 /// filled if `fill` is set.
 pub(super) fn solid(ink: &Mask, across: usize, fill: bool) -> Solid {
     let (ink, surroundings) = without_surroundings(ink);
-    let (ink, specks) = without_specks(ink, across);
+    let (ink, specks) = without_specks(&ink, across);
     let ink = ink.reduced((ink.longer() / (DETAIL * across)).max(1));
     let surroundings = (surroundings > 0).then_some(NoteKind::Surroundings {
         left_out: surroundings,
@@ -69,30 +69,30 @@ fn without_surroundings(ink: &Mask) -> (Mask, usize) {
 }
 
 /// Removes specks, and trims what remains. Returns the number of specks.
-fn without_specks(ink: Mask, across: usize) -> (Mask, usize) {
-    let (mut ink, mut specks) = (ink.trimmed(), 0);
-    // Without specks far away, the drawing is smaller, and so are its voxels. Fewer specks are below the limit
-    // in the second round, but some drawings have specks within their extent only then.
-    loop {
-        let components = ink.components();
-        let largest = components.list.iter().map(|component| component.area).max();
-        let voxel = ink.longer() as f64 / across as f64;
-        let is_speck = |component: &Component| {
-            (component.area as f64) < SPECK * voxel * voxel && Some(component.area) != largest
-        };
-        let found = components
-            .list
-            .iter()
-            .filter(|component| is_speck(component))
-            .count();
-        if found == 0 {
-            return (ink, specks);
-        }
-        specks += found;
-        ink = components
-            .kept(ink.size, |component| !is_speck(component))
-            .trimmed();
-    }
+fn without_specks(ink: &Mask, across: usize) -> (Mask, usize) {
+    let components = ink.components();
+    let largest = components.list.iter().map(|component| component.area).max();
+    let limit = |extent: &Extent| SPECK * (longer(extent) as f64 / across as f64).powi(2);
+    // Specks far away make the extent of all ink, and so its voxels, too large. Within the extent of what is
+    // large even then, smaller things count.
+    let coarse = limit(&ink.extent());
+    let is_large =
+        |component: &Component| component.area as f64 >= coarse || Some(component.area) == largest;
+    let drawing = components.kept(ink.size, is_large).extent();
+    let fine = limit(&drawing);
+    let is_kept = |component: &Component| {
+        let is_inside = (0..2).all(|axis| {
+            let (own, all) = (&component.extent[axis], &drawing[axis]);
+            own.start < all.end && all.start < own.end
+        });
+        is_large(component) || is_inside && component.area as f64 >= fine
+    };
+    let specks = components
+        .list
+        .iter()
+        .filter(|component| !is_kept(component))
+        .count();
+    (components.kept(ink.size, is_kept).trimmed(), specks)
 }
 
 /// Returns ink with closed outlines filled and thin strokes thickened, so that voxels of which at least half is
@@ -121,7 +121,9 @@ fn thickened(solid: Mask, voxel: f64, thin: f64, by: f64) -> Mask {
     let thick = solid.clone().eroded(thin).dilated(thin + 1.5);
     let strokes = solid.clone().and(&thick.inverted()).components();
     // Corners of thick parts are thin, too, but short.
-    let strokes = strokes.kept(solid.size, |component| component.longer() as f64 > voxel);
+    let strokes = strokes.kept(solid.size, |component| {
+        longer(&component.extent) as f64 > voxel
+    });
     solid.or(&strokes.dilated(by))
 }
 

@@ -11,6 +11,9 @@ pub(super) struct Mask {
     pub on: Vec<bool>,
 }
 
+/// Columns and rows.
+pub(super) type Extent = [Range<usize>; 2];
+
 /// Pixels that hang together along edges or at corners.
 #[derive(Clone, Debug)]
 pub(super) struct Component {
@@ -19,7 +22,7 @@ pub(super) struct Component {
     /// Number of pixels at the edge of the mask.
     pub at_edge: usize,
     /// Columns and rows that the pixels lie in.
-    pub extent: [Range<usize>; 2],
+    pub extent: Extent,
 }
 
 /// Components of a mask, in the order of their first pixels.
@@ -44,7 +47,7 @@ impl Mask {
     }
 
     /// Returns the columns and rows that pixels which are on lie in; empty ranges if there are none.
-    pub fn extent(&self) -> [Range<usize>; 2] {
+    pub fn extent(&self) -> Extent {
         let [width, height] = self.size;
         let mut extent = [width..0, height..0];
         for (row, pixels) in self.on.chunks_exact(width.max(1)).enumerate() {
@@ -61,7 +64,7 @@ impl Mask {
     }
 
     /// Returns the part of the mask in some columns and rows.
-    pub fn part(&self, [columns, rows]: &[Range<usize>; 2]) -> Self {
+    pub fn part(&self, [columns, rows]: &Extent) -> Self {
         Self::from_fn([columns.len(), rows.len()], |column, row| {
             self.on[(rows.start + row) * self.size[0] + columns.start + column]
         })
@@ -256,15 +259,13 @@ impl Components {
     }
 }
 
-impl Component {
-    /// Returns the length of the longer side [pixels].
-    pub fn longer(&self) -> usize {
-        self.extent[0].len().max(self.extent[1].len())
-    }
+/// Returns the length of the longer side of an extent [pixels].
+pub(super) fn longer([columns, rows]: &Extent) -> usize {
+    columns.len().max(rows.len())
 }
 
 /// Extends ranges of columns and rows to a pixel.
-fn grow(extent: &mut [Range<usize>; 2], pixel: [usize; 2]) {
+fn grow(extent: &mut Extent, pixel: [usize; 2]) {
     for (range, at) in extent.iter_mut().zip(pixel) {
         *range = range.start.min(at)..range.end.max(at + 1);
     }

@@ -44,6 +44,9 @@ pub struct BodyText {
     /// File in place of a shape: a picture (in 2D) or a MagicaVoxel model (in 3D). Its content decides the
     /// type, not its name. The path is relative to the folder of the scene.
     pub file: Option<String>,
+    /// Name of the part of a MagicaVoxel file that becomes the body: a model or a group. Default: all visible
+    /// models. Removed when the part is embedded.
+    pub model: Option<String>,
     /// Content of `file` in base64, once it is embedded. Its pixels count as they are, as with `plain`.
     pub content: Option<String>,
     /// List of voxels in place of a shape.
@@ -63,7 +66,7 @@ pub struct BodyText {
     /// are not filled and strokes are not thickened; see [`Picture::grid`](crate::import::Picture::grid).
     /// Default false.
     pub plain: Option<bool>,
-    /// Width of the grid [m]; for a file, length of its longest side. Default 1.
+    /// Width of the grid [m]; for a file, length of the longest side of what is solid in it. Default 1.
     pub width: f32,
     /// Number of voxels on each axis in multiples of `n`, e.g. [3.0, 1.0, 1.0]; only for a box or an empty
     /// grid.
@@ -277,6 +280,7 @@ impl Default for BodyText {
         Self {
             shape: None,
             file: None,
+            model: None,
             content: None,
             voxels: None,
             state: None,

@@ -14,6 +14,8 @@ pub(super) struct Budget {
     pub(super) plane_tests: usize,
     /// Remaining colour comparisons: one for each pixel and named colour of a picture.
     pub(super) colour_comparisons: usize,
+    /// Remaining steps of decoding models.
+    model_steps: usize,
 }
 
 impl Budget {
@@ -26,7 +28,35 @@ impl Budget {
             plane_tests: 1 << 26,
             // Budget for four pictures of the maximum size with 16 named colours each.
             colour_comparisons: 1 << 30,
+            // Budget for 16 models of the maximum size.
+            model_steps: 1 << 29,
         }
+    }
+
+    /// Takes the work of decoding a model.
+    pub(super) fn take_model(&mut self, steps: usize) -> Result<(), FieldError> {
+        let expected =
+            "expected fewer or smaller models in the scene: decoding them takes too long";
+        require(steps <= self.model_steps, "file", expected)?;
+        self.model_steps -= steps;
+        Ok(())
+    }
+
+    /// Checks that the voxels of a model are within the limit of the scene.
+    pub(super) fn check_model(&self, size: [i32; 3]) -> Result<(), FieldError> {
+        let [x, y, z] = size;
+        let count = size
+            .into_iter()
+            .map(|extent| extent as usize)
+            .product::<usize>();
+        let (most, found) = (self.most_voxels, self.voxels.saturating_add(count));
+        let share = most.saturating_sub(self.voxels) as f64 / count as f64;
+        let expected = format!(
+            "expected {most} voxels at most in the grids of all bodies together, found {found}, of which \
+             {x} x {y} x {z} in this model; make the model smaller, to {:.0} % of its width, or use a part of it",
+            (100.0 * share.cbrt()).floor()
+        );
+        require(found <= most, "file", expected)
     }
 
     /// Counts `count` more voxels. Returns an error if the scene would then have too many.

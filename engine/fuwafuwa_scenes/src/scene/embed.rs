@@ -39,57 +39,76 @@ impl BodyText {
         })?;
         budget.take_pixels(bytes.len(), 1)?;
         let found = FileType::of(&bytes);
-        let (content, notes) = match dim {
-            2 if found.is_readable_picture() => self.voxels_of_picture(&file, bytes, budget)?,
-            3 if found == FileType::Vox => (reduced_model(&file, bytes), Vec::new()),
-            _ => return Err(wrong_type(&file, found, dim.into())),
-        };
-        self.embed(&content);
-        Ok(notes)
+        match dim {
+            2 if found.is_readable_picture() => self.embed_picture(&file, bytes, budget),
+            3 if found == FileType::Vox => self.embed_model(&file, &bytes, budget),
+            _ => Err(wrong_type(&file, found, dim.into())),
+        }
     }
 
-    /// Returns a PNG file with one pixel per voxel of the body, and the notes of the import. Takes the fields
-    /// that only the import needs. A small PNG file whose pixels count as they are is returned whole.
-    fn voxels_of_picture(
+    /// Embeds a PNG file with one pixel per voxel of the body. Takes the fields that only the import needs. A
+    /// small PNG file whose pixels count as they are is embedded whole.
+    fn embed_picture(
         &mut self,
         file: &str,
         bytes: Vec<u8>,
         budget: &mut Budget,
-    ) -> Result<(Vec<u8>, Vec<ImportNote>), FieldError> {
+    ) -> Result<Vec<ImportNote>, FieldError> {
         let across = self.n.unwrap_or(MAX_EXTENT);
         check_across(across)?;
         let colours = colours(self)?;
         let picture = Picture::decode(file, &bytes).map_err(FieldError::file)?;
         budget.take_pixels(picture.size().iter().product(), colours.named.len())?;
         let fill = self.fill.take().unwrap_or(true);
-        let (grid, notes) = match self.plain.take() {
-            Some(true) if bytes.len() <= SMALL && FileType::of(&bytes) == FileType::Png => {
-                return Ok((bytes, Vec::new()));
-            }
-            Some(true) => (picture.grid(across, 1.0, &colours), Vec::new()),
-            _ => {
-                let options = PictureOptions {
-                    across,
-                    voxel_size: 1.0,
-                    colours: colours.clone(),
-                    fill,
-                };
-                let import = picture.import(&options).map_err(FieldError::file)?;
-                (Ok(import.grid), import.notes)
-            }
+        let is_plain = self.plain.take().unwrap_or(false);
+        if is_plain && bytes.len() <= SMALL && FileType::of(&bytes) == FileType::Png {
+            self.embed(&bytes);
+            return Ok(Vec::new());
+        }
+        let (grid, notes) = if is_plain {
+            let grid = picture.grid(across, 1.0, &colours);
+            (grid.map_err(FieldError::file)?, Vec::new())
+        } else {
+            let options = PictureOptions {
+                across,
+                voxel_size: 1.0,
+                colours: colours.clone(),
+                fill,
+            };
+            let import = picture.import(&options).map_err(FieldError::file)?;
+            (import.grid, import.notes)
         };
-        let grid = grid.map_err(FieldError::file)?;
         let reduced = png_of(&grid, &colours);
-        let unexpected = || FieldError::new("file", "expected a colour for each material");
-        Ok((reduced.ok_or_else(unexpected)?, notes))
+        let missing = || FieldError::new("colours", "expected a colour for each material");
+        self.embed(&reduced.ok_or_else(missing)?);
+        Ok(notes)
     }
-}
 
-/// Returns a smaller file with the same model. An invalid file is returned as it is, and its error is reported
-/// when the body is built.
-fn reduced_model(file: &str, bytes: Vec<u8>) -> Vec<u8> {
-    match bytes.len() > SMALL {
-        true => Model::decode(file, &bytes).map_or(bytes, |model| model.bytes()),
-        false => bytes,
+    /// Embeds the visible models of a file, or the part of it that the body is made from. A file that is no
+    /// longer than these models is embedded whole, as is an invalid file, whose error is reported when the
+    /// body is built.
+    fn embed_model(
+        &mut self,
+        file: &str,
+        bytes: &[u8],
+        budget: &mut Budget,
+    ) -> Result<Vec<ImportNote>, FieldError> {
+        let Ok(model) = Model::decode_part(file, bytes, self.model.as_deref()) else {
+            self.embed(bytes);
+            return Ok(Vec::new());
+        };
+        budget.take_model(model.work())?;
+        let less = model.bytes();
+        if self.model.take().is_some() || less.len() < bytes.len() {
+            self.embed(&less);
+        } else {
+            self.embed(bytes);
+        }
+        // Wrong colours are reported when the body is built.
+        let import = colours(self).map(|colours| model.import(1.0, &colours));
+        Ok(import
+            .ok()
+            .and_then(Result::ok)
+            .map_or_else(Vec::new, |import| import.notes))
     }
 }

@@ -183,14 +183,14 @@ pub(super) fn vector_of<D: Dim>(field: &str, numbers: [f32; 3]) -> Result<D::Vec
     Ok(D::Vector::from_vec3(Vec3::from(numbers)))
 }
 
-/// Source of a scene: its name and the lines of its values. All origins compare equal, because they are not
+/// Source of a scene: its name, the lines of its values and notes on its files. All origins compare equal, because they are not
 /// part of a scene's content.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Origin {
     pub(super) name: String,
     /// Line numbers by path, as in `body.2.n`.
     lines: BTreeMap<String, usize>,
-    /// Notes of the files that were embedded.
+    /// Notes on the files that were embedded.
     pub(super) notes: Vec<ImportNote>,
 }
 
@@ -211,9 +211,8 @@ impl Origin {
     }
 
     pub(super) fn named(name: &str) -> Self {
-        let name = name.into();
         Self {
-            name,
+            name: name.into(),
             ..Self::default()
         }
     }

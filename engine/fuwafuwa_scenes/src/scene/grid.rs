@@ -20,6 +20,12 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
     let expected = "only for a picture whose content is not embedded yet";
     require(text.fill.is_none(), "fill", expected)?;
     require(text.plain.is_none(), "plain", expected)?;
+    let expected = "only a MagicaVoxel file has parts with names";
+    require(
+        text.model.is_none() || text.file.is_some(),
+        "model",
+        expected,
+    )?;
     let mut voxels = match (text.shape, &text.file, &text.voxels) {
         (Some(form), None, None) => of_form::<D>(text, form, budget)?,
         (None, Some(file), None) => of_file::<D>(text, file, budget)?,
@@ -195,6 +201,8 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
     let bytes = text.file_bytes()?;
     match (FileType::of(&bytes), D::N) {
         (found, Dim2::N) if found.is_readable_picture() => {
+            let expected = "only a MagicaVoxel file has parts with names";
+            require(text.model.is_none(), "model", expected)?;
             let across = text.n.unwrap_or(MAX_EXTENT);
             check_across(across)?;
             let both = named && text.material.is_some();
@@ -220,8 +228,11 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
             require(text.n.is_none(), "n", expected)?;
             let expected = "the palette indices of a model are its materials, see colours";
             require(text.material.is_none(), "material", expected)?;
-            let model = Model::decode(&name, &bytes).map_err(FieldError::file)?;
+            let model = Model::decode_part(&name, &bytes, text.model.as_deref());
+            let model = model.map_err(FieldError::file)?;
+            budget.take_model(model.work())?;
             let grid = model.grid(1.0, &colours).map_err(FieldError::file)?;
+            budget.check_model(grid.size())?;
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| solid))
         }
         (found, dim) => Err(wrong_type(&name, found, dim)),

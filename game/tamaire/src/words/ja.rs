@@ -311,7 +311,7 @@ mod tests {
         };
         let broken = refused("a.toml", "dim = 2\ngravity = \"down\"\n");
         assert!(broken.contains("読めません") && broken.contains("line 2"));
-        let model = refused("a.vox", "VOX");
+        let model = refused("a.vox", "VOX ");
         assert!(model.contains("体を作れませんでした。a.vox"), "{model}");
         let old = replay_error(&ReplayError::Version { found: 7 });
         assert!(old.contains("バージョン（7）"), "{old}");
