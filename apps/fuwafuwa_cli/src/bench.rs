@@ -3,7 +3,7 @@
 
 mod rapier;
 
-use crate::report::{Progress, table};
+use crate::report::{self, Progress, table};
 use anyhow::Result;
 use clap::ValueEnum;
 use fuwafuwa::{
@@ -203,6 +203,7 @@ fn release_time<D: Dim>(n: usize) -> Result<Measure> {
 /// Measures the ticks of a scene. If it tears, separates the ticks before and after the first tear.
 fn scene(name: &str, changes: &[String], progress: &Progress) -> Result<Vec<Measure>> {
     let scene = open_scene(name, changes)?;
+    report::notes(&scene);
     let name = [&[name.to_string()], changes].concat().join(" ");
     match scene.dim {
         2 => scene_in::<Dim2>(&name, &scene, progress),

@@ -1,5 +1,6 @@
 //! Output of results: aligned tables, outcomes of checks, a progress bar.
 
+use fuwafuwa_scenes::Scene;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::ops::RangeInclusive;
@@ -7,6 +8,13 @@ use std::time::{Duration, Instant};
 
 /// Running time of a command after which its progress bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Prints notes on the pictures and models of a scene to stderr.
+pub fn notes(scene: &Scene) {
+    for note in scene.notes() {
+        eprintln!("note: {note}");
+    }
+}
 
 /// Outcome of a check for one measured value.
 #[derive(Clone, Debug, Serialize)]

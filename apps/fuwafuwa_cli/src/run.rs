@@ -1,6 +1,6 @@
 //! Runs a scene, films it, and records the inputs of its hands.
 
-use crate::report::Progress;
+use crate::report::{self, Progress};
 use anyhow::{Context, Result};
 use fuwafuwa::{Dim, Dim2, Dim3, Event, Vec3, World};
 use fuwafuwa_painter::solid::{Camera, Scene3d};
@@ -110,6 +110,7 @@ impl Filmed for Dim3 {
 /// Runs the scene.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let scene = open_scene(&arguments.scene, &arguments.changes)?;
+    report::notes(&scene);
     match scene.dim {
         2 => run_in::<Dim2>(&scene, arguments),
         _ => run_in::<Dim3>(&scene, arguments),

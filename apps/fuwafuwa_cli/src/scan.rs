@@ -217,18 +217,18 @@ fn write_files(out: &Path, organ: &Organ, summary: &Summary) -> Result<()> {
     let model = out.with_extension("vox");
     let name = model.file_name().unwrap_or_default().to_string_lossy();
     let colours: Vec<_> = COLOURS.into_iter().cycle().take(255).collect();
-    let bytes = Model::of(&name, &organ.grid, &colours)?.bytes();
-    write(&model, &bytes)?;
+    let made = Model::of(&name, &organ.grid, &colours)?;
+    write(&model, &made.bytes())?;
     if is_scene(out)? {
-        write(out, scene(&name, summary).as_bytes())?;
+        write(out, scene(&name, made.size(), summary).as_bytes())?;
     }
     Ok(())
 }
 
 /// Returns the TOML text of a scene in which the organ, in real size, falls onto a table 1 cm below.
-fn scene(model: &str, summary: &Summary) -> String {
+fn scene(model: &str, size: [usize; 3], summary: &Summary) -> String {
     let last = summary.materials.last().map_or(1, |share| share.material);
-    let [right, up, back] = summary.grid.map(|k| k as f32 * summary.voxel / 1000.0);
+    let [right, up, back] = size.map(|k| k as f32 * summary.voxel / 1000.0);
     let longest = right.max(up).max(back);
     let around = 0.6 * longest;
     let mut text = format!(

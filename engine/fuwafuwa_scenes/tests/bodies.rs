@@ -228,6 +228,10 @@ fn model_in_scene_folder_becomes_body() {
     };
     let expected = ["1", "3"].map(String::from).to_vec();
     assert_eq!(with("colours = { \"79\" = 3, \"80\" = 1 }"), Ok(expected));
+    // Without a palette in the file, index 79 is #99ccff and index 80 is #99cccc.
+    let expected = ["1", "3"].map(String::from).to_vec();
+    let named = with("colours = { \"#90c8ff\" = 3, \"#90c8c8\" = 1 }");
+    assert_eq!(named, Ok(expected));
     for (fields, expected) in [
         (
             "",
@@ -236,10 +240,6 @@ fn model_in_scene_folder_becomes_body() {
         (
             "colours = { \"79\" = 3 }",
             "expected a material for the palette index 80, found none",
-        ),
-        (
-            "colours = { \"#ff0000\" = 3 }",
-            "none (name palette indices instead)",
         ),
         (
             "colours = { \"0\" = 3 }",

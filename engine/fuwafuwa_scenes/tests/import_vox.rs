@@ -1,29 +1,13 @@
 //! MagicaVoxel models become solid shapes, and no input bytes cause harm.
 
 mod damage;
+#[allow(dead_code)]
+mod vox_file;
 
 use damage::Noise;
 use fuwafuwa::{Dim3, Error, VoxelGrid};
 use fuwafuwa_scenes::import::{Colours, FilePosition, ImportError, Model, Problem, vox};
-
-fn chunk(name: &[u8; 4], contents: &[u8], children: &[u8]) -> Vec<u8> {
-    let mut bytes = name.to_vec();
-    bytes.extend((contents.len() as u32).to_le_bytes());
-    bytes.extend((children.len() as u32).to_le_bytes());
-    bytes.extend(contents);
-    bytes.extend(children);
-    bytes
-}
-
-fn size(size: [u32; 3]) -> Vec<u8> {
-    chunk(b"SIZE", &size.map(u32::to_le_bytes).concat(), &[])
-}
-
-/// Encodes a list of voxels with a stated length of `count`.
-fn voxels(count: usize, voxels: &[[u8; 4]]) -> Vec<u8> {
-    let contents = [&(count as u32).to_le_bytes()[..], &voxels.concat()].concat();
-    chunk(b"XYZI", &contents, &[])
-}
+use vox_file::{chunk, file, model, size, voxels};
 
 /// Encodes a palette with red as colour 1, dark red as 2, green as 7 and black for all others.
 fn palette() -> Vec<u8> {
@@ -32,15 +16,6 @@ fn palette() -> Vec<u8> {
     colours[1] = [120, 0, 0, 255];
     colours[6] = [0, 255, 0, 255];
     chunk(b"RGBA", colours.as_flattened(), &[])
-}
-
-fn file(version: u32, chunks: &[Vec<u8>]) -> Vec<u8> {
-    let main = chunk(b"MAIN", &[], &chunks.concat());
-    [&b"VOX "[..], &version.to_le_bytes(), &main].concat()
-}
-
-fn model(extent: [u32; 3], list: &[[u8; 4]]) -> Vec<u8> {
-    file(150, &[size(extent), voxels(list.len(), list)])
 }
 
 /// Encodes a file with much that is ignored: a second model and unknown chunks.
@@ -61,7 +36,7 @@ fn full() -> Vec<u8> {
 }
 
 fn import(bytes: &[u8]) -> Result<VoxelGrid<Dim3>, ImportError> {
-    vox("test.vox", bytes, 0.25)
+    vox("test.vox", bytes, 0.25).map(|import| import.grid)
 }
 
 #[test]
@@ -110,15 +85,71 @@ fn grid_maps_colours_and_palette_indices_to_materials() {
     assert!(nothing.contains("no solid voxel"), "{nothing}");
 }
 
-#[test]
-fn grid_rejects_colours_without_palette() {
-    let bare = Model::decode("test.vox", &model([1; 3], &[[0, 0, 0, 4]])).unwrap();
+/// Decodes two voxels with palette indices 1 and `index`, and returns the colours of the whole palette and
+/// the material of the second voxel if white is material 1 and red is material 2.
+fn palette_of(index: u8, chunks: &[Vec<u8>]) -> (Vec<[u8; 3]>, u8) {
+    let both = [
+        size([2, 1, 1]),
+        voxels(2, &[[0, 0, 0, 1], [1, 0, 0, index]]),
+    ];
+    let bytes = file(150, &[&both[..], chunks].concat());
+    let model = Model::decode("test.vox", &bytes).unwrap();
     let colours = Colours {
-        named: [([0; 3], 1)].into(),
+        named: [([255; 3], 1), ([255, 0, 0], 2)].into(),
         ..Colours::default()
     };
-    let error = bare.grid(1.0, &colours).unwrap_err().to_string();
-    assert!(error.contains("expected a chunk RGBA"), "{error}");
+    let grid = model.grid(1.0, &colours).unwrap();
+    (model.palette().to_vec(), grid.material([1, 0, 0]))
+}
+
+#[test]
+fn file_without_palette_has_default_colours() {
+    // Index 36 of MagicaVoxel's default palette is red, index 246 a light grey.
+    assert_eq!(palette_of(36, &[]).1, 2);
+    assert_eq!(palette_of(246, &[]).1, 1);
+    let (colours, _) = palette_of(1, &[]);
+    assert_eq!(colours.len(), 255);
+    assert_eq!((colours[35], colours[245]), ([255, 0, 0], [238; 3]));
+}
+
+#[test]
+fn short_palette_is_completed_from_the_default_one() {
+    let short = chunk(b"RGBA", &[200, 100, 50, 255, 255, 1, 2, 255], &[]);
+    let (colours, material) = palette_of(2, &[short]);
+    assert_eq!(colours[..3], [[200, 100, 50], [255, 1, 2], [255, 255, 153]]);
+    assert_eq!((colours.len(), material), (255, 2));
+}
+
+#[test]
+fn entry_with_index_0_is_an_empty_voxel() {
+    let list = [
+        [0, 0, 0, 0],
+        [1, 1, 1, 5],
+        [2, 2, 2, 0],
+        [2, 1, 1, 6],
+        [2, 1, 1, 0],
+    ];
+    let grid = import(&model([3; 3], &list)).unwrap();
+    assert_eq!((grid.size(), grid.material([0; 3])), ([1; 3], 5));
+}
+
+#[test]
+fn canvas_around_a_model_does_not_count() {
+    let die = |canvas: u32, low: u8| {
+        let solid = vox_file::solid([low; 3], [16, 15, 14], 3);
+        import(&model([canvas; 3], &solid)).unwrap()
+    };
+    let alone = die(16, 0);
+    assert_eq!(alone.size(), [16, 14, 15]);
+    assert_eq!(alone, die(40, 12));
+    assert_eq!(alone, die(256, 240));
+    // Voxels that become empty by their colour do not count either.
+    let plate = vox_file::solid([0; 3], [20, 20, 1], 9);
+    let die = vox_file::solid([2, 2, 1], [16, 15, 14], 3);
+    let both = Model::decode("test.vox", &model([20; 3], &[plate, die].concat())).unwrap();
+    let indices = [(3, 3), (9, 0)].into();
+    let named = Default::default();
+    assert_eq!(both.grid(0.25, &Colours { indices, named }).unwrap(), alone);
 }
 
 #[test]
@@ -179,7 +210,7 @@ fn error_names_position_of_each_fault() {
         ),
         (
             model([1, 0, 1], &one),
-            ", chunk SIZE at byte 20: expected 1 to 256 voxels on an axis, found 0",
+            ", byte 60: expected a voxel in the box of 1 x 0 x 1, found (0, 0, 0)",
         ),
         (
             model([1, 1, 257], &one),
@@ -191,7 +222,7 @@ fn error_names_position_of_each_fault() {
         ),
         (
             model([1; 3], &[]),
-            ": the shape is empty: there is no solid voxel in the first model",
+            ": the shape is empty: there is no solid voxel in the models of the file",
         ),
         (
             file(150, &[size([1; 3]), voxels(2, &one)]),
@@ -219,14 +250,14 @@ fn error_names_position_of_each_fault() {
         ),
         (
             model([1; 3], &[[0, 0, 0, 0]]),
-            ", byte 60: expected a palette index from 1 to 255, found 0",
+            ": the shape is empty: there is no solid voxel in the models of the file",
         ),
         (
             file(
                 150,
-                &[size([1; 3]), voxels(1, &one), chunk(b"RGBA", &[0; 4], &[])],
+                &[size([1; 3]), voxels(1, &one), chunk(b"RGBA", &[0; 5], &[])],
             ),
-            ", chunk RGBA at byte 64: expected 1024 bytes for 256 colours, found 4",
+            ", chunk RGBA at byte 64: expected 4 bytes for each of at most 256 colours, found 5 bytes",
         ),
     ];
     for (bytes, expected) in cases {

@@ -368,6 +368,8 @@ impl Game {
     }
 
     fn offer(&mut self, level: Level) {
+        let notes = level.scene().notes().iter();
+        let notes: Vec<String> = notes.map(self.words().import_note).collect();
         let known = self.levels.iter().position(|known| **known == level);
         let index = known.unwrap_or_else(|| {
             self.levels.retain(|known| known.id != level.id);
@@ -378,6 +380,7 @@ impl Game {
             self.files.keep_level(self.levels[index].clone());
         }
         self.start(index);
+        notes.into_iter().for_each(|note| self.notify(note));
     }
 
     /// Returns the levels that lists show with a thumbnail.

@@ -141,6 +141,9 @@ pub fn list() {
 fn try_bot(options: &Options) -> Result<String, HeadlessError> {
     let level = options.level.as_deref().unwrap_or(NAMED[0].0);
     let level = Arc::new(level_at(level)?);
+    for note in level.scene().notes() {
+        eprintln!("tamaire: note: {note}");
+    }
     for path in pictures(options).chain(&options.save) {
         can_be_written(path)?;
     }

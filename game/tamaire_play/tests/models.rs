@@ -90,7 +90,8 @@ fn model_of_any_colours_becomes_the_body_of_a_level() {
         let error = Level::read("wide.VOX", bytes, &nothing).unwrap_err();
         error.to_string()
     };
-    let wide = refused(&model([65, 64, 64], &[[0, 0, 0, 79]], &[[0; 4]; 256]));
+    let corners = [[0, 0, 0, 79], [64, 63, 63, 79]];
+    let wide = refused(&model([65, 64, 64], &corners, &[[0; 4]; 256]));
     assert!(wide.contains("expected 262144 voxels at most"), "{wide}");
     let torn = refused(&pudding()[..1000]);
     for (said, place) in [(&wide, ": "), (&torn, ", byte 20: expected ")] {
@@ -140,4 +141,46 @@ fn model_in_two_parts_counts_as_whole() {
     round.step(InputFrame::default());
     assert_eq!(round.progress().pieces, 2);
     assert_eq!(round.progress().kept, 1.0);
+}
+
+#[test]
+fn model_of_a_level_keeps_only_what_is_visible() {
+    let die: Vec<_> = (0..1000_u16)
+        .map(|k| [k % 10, k / 10 % 10, k / 100].map(|k| 200 + k as u8))
+        .map(|[x, y, z]| [x, y, z, 1])
+        .collect();
+    let colours = [[200; 4]; 256];
+    let bytes = model([255; 3], &die, &colours);
+    let level = Level::read("die.vox", &bytes, &nothing).unwrap();
+    assert!(level.scene().notes().is_empty());
+    let alone: Vec<_> = die
+        .iter()
+        .map(|&[x, y, z, k]| [x - 200, y - 200, z - 200, k])
+        .collect();
+    let alone = Level::read("die.vox", &model([10; 3], &alone, &colours), &nothing).unwrap();
+    let grid = |level: &Level| {
+        let world = level.scene().build::<fuwafuwa::Dim3>().unwrap();
+        world.soft_bodies().next().unwrap().1.grid().clone()
+    };
+    assert_eq!(grid(&level), grid(&alone));
+    assert_eq!(grid(&level).size(), [10; 3]);
+
+    // Two more models without a scene are frames of an animation, and are not stored with the level.
+    let mut animated = bytes[..bytes.len() - 12 - 1024].to_vec();
+    let frame = &bytes[20..animated.len()].to_vec();
+    animated.extend([&frame[..], frame].concat());
+    let length = (animated.len() as u32 - 20).to_le_bytes();
+    animated[16..20].copy_from_slice(&length);
+    let level = Level::read("die.vox", &animated, &nothing).unwrap();
+    let notes: Vec<_> = level
+        .scene()
+        .notes()
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    assert_eq!(
+        notes,
+        ["die.vox: only the first frame is taken; 2 more frames are left out"]
+    );
+    assert!(level.text_to_keep().unwrap().len() < animated.len() / 2);
 }

@@ -21,7 +21,7 @@ use bevy_asset::{Asset, AssetLoader, AsyncReadExt, LoadContext};
 use bevy_reflect::TypePath;
 use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
 use fuwafuwa_scenes::import::{Colours, Model, picture};
-pub use fuwafuwa_scenes::import::{ImportError, MAX_FILE_BYTES};
+pub use fuwafuwa_scenes::import::{ImportError, ImportNote, MAX_FILE_BYTES, NoteKind};
 use serde::{Deserialize, Serialize};
 use std::{fmt, io};
 
@@ -30,9 +30,11 @@ use std::{fmt, io};
 pub struct Voxels<D: Dim> {
     /// Solid voxels and their materials.
     pub grid: VoxelGrid<D>,
-    /// Colours of the materials, number 1 first, as in [`crate::component::SoftColours`]. Empty if the file
-    /// has none.
+    /// Colours of the materials, number 1 first, as in [`crate::component::SoftColours`]. Empty for a
+    /// picture.
     pub colours: Vec<[f32; 3]>,
+    /// Notes on what was left out of the file or may surprise, such as hidden models.
+    pub notes: Vec<ImportNote>,
 }
 
 /// Settings for converting a file to voxels.
@@ -92,7 +94,8 @@ impl From<ImportError> for VoxelsError {
 #[derive(Copy, Clone, Debug, Default, TypePath)]
 pub struct SilhouetteLoader;
 
-/// Reads the first model of a MagicaVoxel file as [`Voxels<Dim3>`].
+/// Reads the visible models of a MagicaVoxel file, put together, as [`Voxels<Dim3>`]. Without colours in the
+/// file, MagicaVoxel's default palette is used.
 #[derive(Copy, Clone, Debug, Default, TypePath)]
 pub struct ModelLoader;
 
@@ -109,9 +112,12 @@ impl AssetLoader for SilhouetteLoader {
     ) -> Result<Voxels<Dim2>, VoxelsError> {
         let bytes = bytes_of(reader).await?;
         let file = context.path().to_string();
-        let grid = picture(&file, &bytes, settings.max_across, settings.voxel_size)?.grid;
-        let colours = Vec::new();
-        Ok(Voxels { grid, colours })
+        let import = picture(&file, &bytes, settings.max_across, settings.voxel_size)?;
+        Ok(Voxels {
+            grid: import.grid,
+            colours: Vec::new(),
+            notes: import.notes,
+        })
     }
 
     fn extensions(&self) -> &[&str] {
@@ -133,12 +139,13 @@ impl AssetLoader for ModelLoader {
         let bytes = bytes_of(reader).await?;
         let file = context.path().to_string();
         let model = Model::decode(&file, &bytes)?;
-        let grid = model.grid(settings.voxel_size, &Colours::default())?;
-        let colours = model.palette().unwrap_or_default().iter();
+        let import = model.import(settings.voxel_size, &Colours::default())?;
+        let colours = model.palette().iter();
         let colours = colours.map(|colour| colour.map(|part| f32::from(part) / 255.0));
         Ok(Voxels {
-            grid,
+            grid: import.grid,
             colours: colours.collect(),
+            notes: import.notes,
         })
     }
 

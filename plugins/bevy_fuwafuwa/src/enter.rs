@@ -77,10 +77,11 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
         Source::Grid(grid) => Some(Voxels {
             grid: grid.clone()?,
             colours: Vec::new(),
+            notes: Vec::new(),
         }),
         Source::Asset(handle) => find_voxels(world, handle)?,
     };
-    let Some(Voxels { grid, colours }) = voxels else {
+    let Some(Voxels { grid, colours, .. }) = voxels else {
         return Ok(Entry::Waits);
     };
     let transform = transform_of(world, entity)?;

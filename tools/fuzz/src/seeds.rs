@@ -8,6 +8,7 @@ use fuwafuwa::{
     Dim, Dim2, Dim3, DimVector, Joint, JointAnchor, JointKind, Knife, Material, RigidBody,
     Rotation, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig, snapshot,
 };
+use fuwafuwa_scenes::import::Model;
 use fuwafuwa_scenes::{Recording, Scene, scene};
 use fuwafuwa_surgery::phantom;
 use fuwafuwa_surgery::procedure::{Input, Procedure};
@@ -63,7 +64,14 @@ pub fn pictures() -> Vec<Vec<u8>> {
 
 pub fn models() -> Vec<Vec<u8>> {
     let cube = (0..27_u8).map(|k| [k % 3, k / 3 % 3, k / 9, 1 + k % 2]);
-    vec![model(3, &cube.collect::<Vec<_>>()), PUDDING.to_vec()]
+    // A model longer than 256 voxels is written in two blocks, with a scene that puts them together.
+    let long = VoxelGrid::<Dim3>::from_fn([257, 1, 2], 1.0, |[x, ..]| u8::from(x % 128 < 2));
+    let long = Model::of("a.vox", &long.expect("a valid grid"), &[]);
+    vec![
+        model(3, &cube.collect::<Vec<_>>()),
+        PUDDING.to_vec(),
+        long.expect("a small model").bytes(),
+    ]
 }
 
 pub fn scans() -> Vec<Vec<u8>> {

@@ -41,9 +41,9 @@ pub enum NoteKind {
         /// Number of frames that were left out.
         left_out: usize,
     },
-    /// Models overlap. One of them decides the material of each voxel in the overlap.
+    /// Models of different colours overlap. One of them decides the material of each voxel in the overlap.
     Overlap {
-        /// Number of voxels that lie in more than one model.
+        /// Number of voxels for which the models have different colours.
         voxels: usize,
     },
     /// Things along the edge of a picture, such as the table below the paper, were left out.
@@ -146,8 +146,10 @@ impl fmt::Display for NoteKind {
                     "only the first frame is taken; {left_out} more frames are left out"
                 )
             }
-            Self::Overlap { voxels: 1 } => write!(f, "models overlap in 1 voxel"),
-            Self::Overlap { voxels } => write!(f, "models overlap in {voxels} voxels"),
+            Self::Overlap { voxels } => {
+                let unit = if voxels == 1 { "voxel" } else { "voxels" };
+                write!(f, "models of different colours overlap in {voxels} {unit}")
+            }
             Self::Surroundings { left_out: 1 } => {
                 write!(f, "what lies along the edge of the picture is left out")
             }

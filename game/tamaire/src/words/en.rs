@@ -3,6 +3,7 @@
 use super::Words;
 use crate::input::{Action, InputMethod};
 use force_feedback::{Ability, Stop};
+use fuwafuwa_scenes::import::{ImportNote, NoteKind};
 use tamaire_play::{Assist, Route};
 
 pub(super) const WORDS: Words = Words {
@@ -239,5 +240,37 @@ pub(super) const WORDS: Words = Words {
     not_written: "This could not be saved:",
     full: "There is no space left, so it was not saved.",
     level_error: |error| error.to_string(),
+    import_note,
     replay_error: |error| error.to_string(),
 };
+
+fn import_note(note: &ImportNote) -> String {
+    let file = &note.file;
+    match note.kind {
+        NoteKind::HiddenModels { left_out } => {
+            format!("{file}: hidden parts are left out ({left_out}).")
+        }
+        NoteKind::UnplacedModels { left_out } => {
+            format!("{file}: parts that are not in its scene are left out ({left_out}).")
+        }
+        NoteKind::Frames { .. } => {
+            format!("{file} is an animation. Only its first picture is used.")
+        }
+        NoteKind::Overlap { voxels } => {
+            format!("{file}: parts of different colours overlap ({voxels} cubes).")
+        }
+        NoteKind::Pieces { pieces, touch } => {
+            let how = if touch {
+                " Cubes that touch only at an edge do not stick together."
+            } else {
+                ""
+            };
+            format!("{file} falls into {pieces} pieces.{how}")
+        }
+        NoteKind::Surroundings { .. } => {
+            format!("{file}: what lies along the edge of the picture is left out.")
+        }
+        NoteKind::Specks { .. } => format!("{file}: small specks are left out."),
+        _ => note.to_string(),
+    }
+}

@@ -3,6 +3,7 @@
 use super::Words;
 use crate::input::{Action, InputMethod};
 use force_feedback::{Ability, Stop};
+use fuwafuwa_scenes::import::{ImportNote, NoteKind};
 use tamaire_play::level::LevelError;
 use tamaire_play::link::{LinkError, MAX_LENGTH};
 use tamaire_play::{Assist, ReplayError, Route};
@@ -241,8 +242,40 @@ pub(super) const WORDS: Words = Words {
     not_written: "保存できませんでした：",
     full: "空きがないので、保存できませんでした。",
     level_error,
+    import_note,
     replay_error,
 };
+
+fn import_note(note: &ImportNote) -> String {
+    let file = &note.file;
+    match note.kind {
+        NoteKind::HiddenModels { left_out } => {
+            format!("{file}：かくしてある部分（{left_out}こ）は使いませんでした。")
+        }
+        NoteKind::UnplacedModels { left_out } => {
+            format!("{file}：シーンにない部分（{left_out}こ）は使いませんでした。")
+        }
+        NoteKind::Frames { .. } => {
+            format!("{file} はアニメーションなので、さいしょの絵だけを使いました。")
+        }
+        NoteKind::Overlap { voxels } => {
+            format!("{file}：色のちがう部分が、キューブ{voxels}こ分 重なっています。")
+        }
+        NoteKind::Pieces { pieces, touch } => {
+            let how = if touch {
+                "ふちや かどだけでは、くっつきません。"
+            } else {
+                ""
+            };
+            format!("{file} は{pieces}つに分かれます。{how}")
+        }
+        NoteKind::Surroundings { .. } => {
+            format!("{file}：絵のふちにあるものは使いませんでした。")
+        }
+        NoteKind::Specks { .. } => format!("{file}：小さな点は使いませんでした。"),
+        _ => note.to_string(),
+    }
+}
 
 /// Error text in Japanese. Details that name fields and lines of files are not translated.
 fn level_error(error: &LevelError) -> String {

@@ -2,6 +2,7 @@
 
 use crate::input::{Action, InputMethod};
 use force_feedback::{Ability, Calibration, Stop};
+use fuwafuwa_scenes::import::ImportNote;
 use tamaire_play::level::LevelError;
 use tamaire_play::link::LinkError;
 use tamaire_play::{Assist, Outcome, ReplayError, Route, Wish};
@@ -116,5 +117,7 @@ pub struct Words {
     pub not_written: &'static str,
     pub full: &'static str,
     pub level_error: fn(&LevelError) -> String,
+    /// Note on an imported file: what was left out of it or may surprise.
+    pub import_note: fn(&ImportNote) -> String,
     pub replay_error: fn(&ReplayError) -> String,
 }
