@@ -311,7 +311,7 @@ fn all_hidden_models_leave_an_empty_shape() {
             shape(1, &[], &[0]),
         ],
     );
-    let expected = "test.vox: the shape is empty: there is no solid voxel in the visible models of the file; others are hidden";
+    let expected = "test.vox: the shape is empty: there is no solid voxel in the visible models of the file; others are hidden or not in its scene";
     assert_eq!(refusal(&bytes), expected);
 }
 

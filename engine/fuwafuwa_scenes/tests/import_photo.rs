@@ -8,11 +8,12 @@ use fuwafuwa_scenes::import::{ImportError, Picture, PictureOptions, Problem, pic
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use std::io::Cursor;
 
-/// Red L of 48 × 96 pixels in a white picture of 64 × 128: an upright bar and a foot to the right.
+/// Red L of 64 × 96 pixels in a white picture of 80 × 128: an upright bar and a foot to the right, both 32 pixels
+/// wide.
 fn l_shape() -> DynamicImage {
     let is_solid =
-        |x: u32, y: u32| (8..56).contains(&x) && (16..112).contains(&y) && (x < 24 || y >= 96);
-    RgbImage::from_fn(64, 128, |x, y| {
+        |x: u32, y: u32| (8..72).contains(&x) && (16..112).contains(&y) && (x < 40 || y >= 80);
+    RgbImage::from_fn(80, 128, |x, y| {
         Rgb(if is_solid(x, y) {
             [255, 0, 0]
         } else {
@@ -21,6 +22,9 @@ fn l_shape() -> DynamicImage {
     })
     .into()
 }
+
+/// The L in voxels of 16 pixels.
+const UPRIGHT: [&str; 6] = ["##..", "##..", "##..", "##..", "####", "####"];
 
 fn encoded(format: ImageFormat) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
@@ -48,11 +52,7 @@ fn rows(bytes: &[u8], longer: usize) -> Vec<String> {
 fn picture_is_decoded_by_content_whatever_its_name() {
     for format in FORMATS {
         let found = rows(&encoded(format), 6);
-        assert_eq!(
-            found,
-            ["#..", "#..", "#..", "#..", "#..", "###"],
-            "{format:?}"
-        );
+        assert_eq!(found, UPRIGHT, "{format:?}");
     }
 }
 
@@ -69,15 +69,14 @@ fn with_orientation(jpeg: &[u8], orientation: u8) -> Vec<u8> {
 #[test]
 fn photo_is_turned_as_its_exif_orientation_says() {
     let jpeg = encoded(ImageFormat::Jpeg);
-    let upright = ["#..", "#..", "#..", "#..", "#..", "###"];
     // The values of EXIF: 1 is upright, 3 upside down; the camera of 6 was turned so that the picture must be
     // turned a quarter to the right, 8 to the left; 2 is mirrored.
     for (orientation, expected) in [
-        (1, &upright[..]),
-        (2, &["..#", "..#", "..#", "..#", "..#", "###"]),
-        (3, &["###", "..#", "..#", "..#", "..#", "..#"]),
-        (6, &["######", "#.....", "#....."]),
-        (8, &[".....#", ".....#", "######"]),
+        (1, &UPRIGHT[..]),
+        (2, &["..##", "..##", "..##", "..##", "####", "####"]),
+        (3, &["####", "####", "..##", "..##", "..##", "..##"]),
+        (6, &["######", "######", "##....", "##...."]),
+        (8, &["....##", "....##", "######", "######"]),
     ] {
         assert_eq!(
             rows(&with_orientation(&jpeg, orientation), 6),
@@ -90,10 +89,10 @@ fn photo_is_turned_as_its_exif_orientation_says() {
 #[test]
 fn decode_refuses_size_from_header_before_it_allocates() {
     let mut bmp = encoded(ImageFormat::Bmp);
-    bmp[18..22].copy_from_slice(&100_000u32.to_le_bytes());
+    bmp[18..22].copy_from_slice(&20_000u32.to_le_bytes());
     let mut gif = encoded(ImageFormat::Gif);
     gif[6..8].copy_from_slice(&u16::MAX.to_le_bytes());
-    for (bytes, expected) in [(bmp, 100_000), (gif, 65_535)] {
+    for (bytes, expected) in [(bmp, 20_000), (gif, 65_535)] {
         let error = Picture::decode("big", &bytes).unwrap_err();
         let Problem::TooLarge { found, limit, .. } = error.problem else {
             panic!("{error}");
@@ -110,7 +109,8 @@ fn decode_halves_picture_wider_than_4096_pixels() {
     let picture = Picture::decode("wide", bytes.get_ref()).unwrap();
     assert_eq!(picture.size(), [3000, 10]);
     let grid = picture.import(&PictureOptions::default()).unwrap().grid;
-    assert_eq!(grid.solid_count(), 64);
+    // The bar of 1500 × 10 pixels is less than half a voxel high, so it is thickened to 2 voxels.
+    assert_eq!(grid.size(), [64, 2, 1]);
 }
 
 fn import(bytes: &[u8]) -> Result<fuwafuwa::VoxelGrid<Dim2>, ImportError> {

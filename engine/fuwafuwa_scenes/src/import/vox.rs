@@ -243,9 +243,12 @@ impl Model {
         }
         let (solid, disputed) = assemble(&content.models, &placed.models)?;
         if solid.voxels.is_empty() {
-            let what = match placed.hidden {
-                0 => "solid voxel in the models of the file",
-                _ => "solid voxel in the visible models of the file; others are hidden",
+            let what = match (part, placed.hidden + placed.unplaced) {
+                (Some(_), _) => "solid voxel in this part of the file",
+                (None, 0) => "solid voxel in the models of the file",
+                (None, _) => {
+                    "solid voxel in the visible models of the file; others are hidden or not in its scene"
+                }
             };
             return Err((FilePosition::File, Problem::Empty(what)));
         }
@@ -319,11 +322,10 @@ impl<'a> Content<'a> {
         while !chunks.bytes.is_empty() {
             let chunk = chunks.chunk()?;
             match &chunk.name {
+                b"SIZE" if pending.is_none() => pending = Some(chunk.size()?),
                 b"SIZE" => {
-                    if pending.replace(chunk.size()?).is_some() {
-                        let found = "a second chunk SIZE";
-                        return Err(unexpected(chunk.place, "a chunk XYZI after SIZE", found));
-                    }
+                    let found = "a second chunk SIZE";
+                    return Err(unexpected(chunk.place, "a chunk XYZI after SIZE", found));
                 }
                 b"XYZI" => {
                     let none = || unexpected(chunk.place, "a chunk SIZE before it", "none");

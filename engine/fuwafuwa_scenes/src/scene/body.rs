@@ -66,7 +66,7 @@ pub struct BodyText {
     /// are not filled and strokes are not thickened; see [`Picture::grid`](crate::import::Picture::grid).
     /// Default false.
     pub plain: Option<bool>,
-    /// Width of the grid [m]; for a file, length of the longest side of what is solid in it. Default 1.
+    /// Width of the grid [m]; for a file, length of the longest side of its solid part. Default 1.
     pub width: f32,
     /// Number of voxels on each axis in multiples of `n`, e.g. [3.0, 1.0, 1.0]; only for a box or an empty
     /// grid.

@@ -20,7 +20,7 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
     let expected = "only for a picture whose content is not embedded yet";
     require(text.fill.is_none(), "fill", expected)?;
     require(text.plain.is_none(), "plain", expected)?;
-    let expected = "only a MagicaVoxel file has parts with names";
+    let expected = "only a .vox file has parts with names";
     require(
         text.model.is_none() || text.file.is_some(),
         "model",
@@ -201,7 +201,7 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
     let bytes = text.file_bytes()?;
     match (FileType::of(&bytes), D::N) {
         (found, Dim2::N) if found.is_readable_picture() => {
-            let expected = "only a MagicaVoxel file has parts with names";
+            let expected = "only a .vox file has parts with names";
             require(text.model.is_none(), "model", expected)?;
             let across = text.n.unwrap_or(MAX_EXTENT);
             check_across(across)?;

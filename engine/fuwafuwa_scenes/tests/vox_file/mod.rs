@@ -35,7 +35,7 @@ pub fn model_chunks(extent: [u32; 3], list: &[[u8; 4]]) -> Vec<u8> {
 
 /// Returns the voxels of a solid box of one colour, with its low corner at `low`.
 pub fn solid(low: [u8; 3], extent: [u8; 3], index: u8) -> Vec<[u8; 4]> {
-    let [x, y, z] = [0, 1, 2].map(|axis| low[axis]..low[axis] + extent[axis]);
+    let [x, y, z] = [0, 1, 2].map(|axis| low[axis]..=low[axis] + (extent[axis] - 1));
     let columns = x.flat_map(|x| y.clone().map(move |y| (x, y)));
     columns
         .flat_map(|(x, y)| z.clone().map(move |z| [x, y, z, index]))

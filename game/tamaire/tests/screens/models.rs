@@ -107,3 +107,21 @@ fn damaged_model_is_named_and_round_continues() {
         assert_near(goal(&window, 0), at);
     }
 }
+
+#[test]
+fn note_on_a_dropped_model_is_shown() {
+    let folder = folder();
+    let mut animated = std::fs::read(level_file(MODEL)).expect("the level is built in");
+    // Repeats the model, without the palette at the end: a second frame.
+    let frame = animated[20..animated.len() - 12 - 1024].to_vec();
+    animated.extend(frame);
+    let length = animated.len() as u32 - 20;
+    animated[16..20].copy_from_slice(&length.to_le_bytes());
+    let path = folder.path().join("moving.vox");
+    std::fs::write(&path, animated).expect("the test owns the folder");
+    let mut window = window(Files::nowhere());
+    drop_file(&mut window, path);
+    let said = notices(&window);
+    assert!(said.contains("moving.vox is an animation"), "{said}");
+    assert_eq!(screen(&window), Screen::Play);
+}

@@ -53,13 +53,13 @@ impl Bounds {
 impl StoredModel {
     /// Returns the position of a voxel from the pivot of the model, which is half the size of the model,
     /// rounded down to whole voxels.
-    fn from_pivot(&self, voxel: [u8; 3]) -> [i64; 3] {
+    fn relative_to_pivot(&self, voxel: [u8; 3]) -> [i64; 3] {
         [0, 1, 2].map(|axis| i64::from(voxel[axis]) - i64::from(self.size[axis] / 2))
     }
 
     fn bounds(&self) -> Option<Bounds> {
         let voxels = self.voxels.iter();
-        Bounds::of(voxels.map(|&[x, y, z, _]| self.from_pivot([x, y, z])))
+        Bounds::of(voxels.map(|&[x, y, z, _]| self.relative_to_pivot([x, y, z])))
     }
 }
 
@@ -95,7 +95,7 @@ pub(super) fn assemble(
     for Placement { model, motion } in placements {
         let model = &models[*model];
         for &[x, y, z, index] in &model.voxels {
-            let at = motion.moved_voxel(model.from_pivot([x, y, z]));
+            let at = motion.moved_voxel(model.relative_to_pivot([x, y, z]));
             let [x, y, z] = [0, 1, 2].map(|axis| (at[axis] - bounds.low[axis]) as usize);
             // Converts the position to the axes of the engine, on which y points up.
             let at = ((depth - 1 - y) * height + z) * width + x;

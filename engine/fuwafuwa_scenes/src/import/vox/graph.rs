@@ -218,7 +218,7 @@ impl State {
     }
 }
 
-/// Walk through the nodes. It keeps its own stack, because a file may nest its nodes as deeply as it likes.
+/// Walk through the nodes. It keeps its own stack, because the nodes of a file may be nested deeply.
 struct Walk<'a> {
     graph: &'a Graph<'a>,
     is_solid: &'a [bool],
