@@ -53,7 +53,7 @@ fn drawn_body_has_area_of_body_of_classic() {
         let (low, found, area) = body(&read("my drawing", &bytes));
         assert!((area / wanted - 1.0).abs() < 0.02, "{area}");
         for axis in 0..2 {
-            assert!((found[axis] / widths[axis] - 1.0).abs() < 0.02, "{found:?}");
+            assert!((found[axis] / widths[axis] - 1.0).abs() < 0.03, "{found:?}");
         }
         assert_eq!(low[0], -1.1);
         assert!((low[1] + 0.5 * found[1]).abs() < 1e-3, "{low:?}");
