@@ -61,7 +61,10 @@ pub fn png(bytes: &[u8]) -> bool {
         ..PictureOptions::default()
     };
     let drawn = picture.import(&options).map(|import| import.grid);
-    [plain, coloured, drawn].into_iter().flatten().for_each(drop_in);
+    [plain, coloured, drawn]
+        .into_iter()
+        .flatten()
+        .for_each(drop_in);
     true
 }
 
