@@ -1,7 +1,7 @@
 //! File access, for programs with a file system. The rest of the crate uses no paths and also works in a
 //! browser.
 
-use crate::import::MAX_FILE_BYTES;
+use crate::import::{FileType, MAX_FILE_BYTES};
 use crate::scene::{MAX_TEXT_BYTES, NAMED, Scene, SceneError};
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
@@ -30,10 +30,26 @@ pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// Reads a UTF-8 text file of at most `most` bytes.
 ///
 /// # Errors
-/// Same errors as [`read_bytes`], and [`ErrorKind::InvalidData`] if the file is not UTF-8.
+/// Same errors as [`read_bytes`], and [`ErrorKind::InvalidData`] if the file is no text in UTF-8. The error names
+/// the type of the file.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
-    let text = String::from_utf8(read_bytes(path, most)?);
-    text.map_err(|_| io::Error::new(ErrorKind::InvalidData, "expected a text in UTF-8"))
+    // A file of another type is often longer than a text, but its length is not what is wrong with it.
+    let bytes = read_bytes(path, most.max(MAX_FILE_BYTES))?;
+    let text = text_of(bytes).map_err(|reason| io::Error::new(ErrorKind::InvalidData, reason))?;
+    if text.len() as u64 > most {
+        let reason = format!("expected at most {most} bytes, found {}", text.len());
+        return Err(io::Error::new(ErrorKind::FileTooLarge, reason));
+    }
+    Ok(text)
+}
+
+/// Returns the bytes of a file as a text, or the reason why they are none.
+fn text_of(bytes: Vec<u8>) -> Result<String, String> {
+    let found = FileType::of(&bytes);
+    let text = String::from_utf8(bytes)
+        .ok()
+        .filter(|_| found.is_plain_text());
+    text.ok_or_else(|| format!("expected a TOML text in UTF-8, found {found}"))
 }
 
 /// Returns a function that reads pictures and models from a folder, for [`Scene::embed_files`].
@@ -64,6 +80,24 @@ pub fn open_scene(place: &str, changes: &[String]) -> Result<Scene, SceneError> 
 mod tests {
     use super::*;
     use std::process::Command;
+
+    #[test]
+    fn error_of_text_names_type_of_file() {
+        let refused = |bytes: &[u8]| text_of(bytes.to_vec()).unwrap_err();
+        for (bytes, found) in [
+            (&b"\xff\xd8\xff\xe0 photo"[..], "a JPEG picture"),
+            (b"<!doctype html><title>404</title>", "a web page"),
+            (b"d\0i\0m\0 \0=\0 \02\0", "a text in UTF-16, not in UTF-8"),
+            (
+                b"version https://git-lfs.github.com/spec/v1\n",
+                "a Git LFS pointer, not the file itself (run git lfs pull)",
+            ),
+        ] {
+            let expected = format!("expected a TOML text in UTF-8, found {found}");
+            assert_eq!(refused(bytes), expected);
+        }
+        assert_eq!(text_of(b"dim = 2".to_vec()).unwrap(), "dim = 2");
+    }
 
     #[cfg(unix)]
     #[test]

@@ -26,8 +26,10 @@
 //! box = { centre = [0.5, 0.5, 0.0], half = [0.05, 0.05, 0.0] }
 //!
 //! [[body]]
-//! file = "cat.png"                # in 3D a .vox file; relative to the folder of the scene
+//! file = "cat.png"                # a picture, in 3D a MagicaVoxel model; relative to the folder of the scene
 //! n = 48                          # maximum number of voxels on the longer side
+//! fill = true                     # closed outlines of a drawing are filled (default)
+//! plain = false                   # true: pixels count as they are, with their margin, as for pixel art
 //! colours = { "#d04030" = 1, "#ffffff" = 0 }   # colour = material; models also take palette indices: "79" = 2
 //!
 //! [[obstacle]]                    # fixed rigid body: half_space, box, capsule or ball
@@ -66,7 +68,7 @@
 //! Vectors have three components in both dimensions; in 2D the third is 0. Files of version 0.2 remain readable:
 //! every key that was renamed since is still accepted under its old name.
 //!
-//! [`Picture::grid`](crate::import::Picture::grid) and [`Model::grid`](crate::import::Model::grid) document
+//! [`Picture::import`](crate::import::Picture::import) and [`Model::grid`](crate::import::Model::grid) document
 //! how pictures and models become voxels. All visible models of a .vox file become one body; `model = "head"`
 //! takes only the part that is called so in MagicaVoxel. [`Scene::notes`] tells what was left out.
 
@@ -345,14 +347,16 @@ impl Scene {
     /// Embeds the files that the scene's bodies are made from, so that the scene is self-contained. A body
     /// with a file cannot be built before its file is embedded.
     ///
+    /// [`Scene::notes`] then returns what was left out or may surprise.
+    ///
     /// # Errors
-    /// [`SceneError::Shape`] names the body whose file could not be read.
+    /// [`SceneError`] names the body whose file could not be read or imported.
     pub fn embed_files(&mut self, fetch: Fetch) -> Result<(), SceneError> {
         let mut budget = Budget::of_scene(MAX_VOXELS);
         // Skips bodies beyond the limit: the build rejects the scene because of them.
         for (index, body) in self.body.iter_mut().enumerate().take(MAX_BODIES) {
-            let notes = body.embed_file(fetch, &mut budget);
-            let notes = notes.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;
+            let embedded = body.embed_file(self.dim, fetch, &mut budget);
+            let notes = embedded.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;
             self.origin.notes.extend(notes);
         }
         Ok(())

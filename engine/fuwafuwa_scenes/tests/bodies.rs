@@ -200,8 +200,7 @@ at = [0.0, 3.0, 0.0]
     assert_eq!(read.replay::<Dim2>(|_| {}).unwrap().differs_at, None);
 
     std::fs::write(folder.join("painting.png"), b"\x89PNG no more").unwrap();
-    let scene = open(&folder).unwrap();
-    let error = scene.build::<Dim2>().unwrap_err().to_string();
+    let error = open(&folder).unwrap_err().to_string();
     assert!(
         error.contains("scene.toml, line 16: body 1, file: "),
         "{error}"

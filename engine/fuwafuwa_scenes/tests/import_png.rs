@@ -1,11 +1,11 @@
-//! PNG pictures become flat shapes, and no input bytes cause harm.
+//! PNG pictures become flat shapes, pixel by pixel, and no input bytes cause harm.
 
 mod damage;
 
 use damage::Noise;
 use fuwafuwa::{Dim2, Error, VoxelGrid};
 use fuwafuwa_scenes::import::{
-    Colours, FilePosition, ImportError, MAX_FILE_BYTES, MAX_PIXELS, Picture, Problem, png,
+    Colours, FilePosition, ImportError, MAX_FILE_BYTES, MAX_PIXELS, Picture, Problem,
 };
 use png::{BitDepth, ColorType, Encoder, Filter};
 
@@ -49,7 +49,7 @@ fn drawing(rows: &[&str]) -> Vec<u8> {
 }
 
 fn import(bytes: &[u8], across: usize) -> Result<VoxelGrid<Dim2>, ImportError> {
-    png("test.png", bytes, across, 0.5)
+    Picture::decode("test.png", bytes)?.grid(across, 0.5, &Colours::default())
 }
 
 /// Returns the materials of a grid, the highest row first.
@@ -228,7 +228,7 @@ fn grid_rejects_palette_indices_for_picture() {
 fn error_names_missing_pixels_for_empty_picture() {
     assert_eq!(
         complaint(&drawing(&["..", ".."])),
-        "test.png: the shape is empty: there is no pixel with a red, green or blue below 128"
+        "test.png: the shape is empty: there is no pixel with a red, green or blue below 128, or none covers half of a voxel"
     );
     let clear = (ColorType::GrayscaleAlpha, BitDepth::Eight);
     let clear = complaint(&encode([1, 1], clear, &[0, 127], |_| {}));
@@ -255,7 +255,7 @@ fn decode_rejects_wrong_size_from_header() {
     }
     assert_eq!(
         complaint(&with_size(&one, [most + 1, 1])),
-        "test.png, chunk IHDR at byte 8: 4097 pixels on a side are too many, the limit is 4096"
+        "test.png, chunk IHDR at byte 8: 8193 pixels on a side are too many, the limit is 8192"
     );
     // The header states more pixels than a file of this length can contain at the best compression.
     assert_eq!(
@@ -279,7 +279,8 @@ fn png_rejects_invalid_arguments() {
         assert_eq!(error, expected);
     }
     for size in [f32::NAN, -1.0, 0.0, f32::INFINITY] {
-        let error = png("test.png", &bytes, 8, size).unwrap_err();
+        let picture = Picture::decode("test.png", &bytes).unwrap();
+        let error = picture.grid(8, size, &Colours::default()).unwrap_err();
         let Problem::Grid(error) = error.problem else {
             panic!("{error}");
         };
@@ -313,8 +314,8 @@ fn decode_rejects_truncated_picture_at_every_length() {
         "test.png, byte 40: expected a PNG picture, found the end of the file"
     );
     assert_eq!(
-        complaint(b"GIF89a and more"),
-        "test.png, byte 0: expected a PNG picture, found Invalid PNG signature."
+        complaint(b"VOX \x96\0\0\0MAIN"),
+        "test.png: expected a picture (PNG, JPEG, WebP, GIF or BMP), found a MagicaVoxel model"
     );
 }
 

@@ -157,7 +157,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "shape = \"ball\"",
             "file = \"a.vox\"",
-            ", line 6: body 1, file: expected .png for dim = 2 or .vox for dim = 3, found a.vox for dim = 2",
+            ", line 5: body 1, content: expected the content of the file",
         ),
         (
             "shape = \"ball\"",

@@ -23,8 +23,8 @@ use window::open_game;
 struct Arguments {
     #[command(subcommand)]
     chore: Option<Task>,
-    /// A level (.toml), a picture or a model to make a body of (.png, .vox), a replay (.tamaire), or a link
-    /// to a round or a level (https://…#r1…)
+    /// A level, a picture (PNG, JPEG, WebP, GIF or BMP) or a MagicaVoxel model to make a body of, a replay, or a
+    /// link to a round or a level (https://…#r1…)
     #[arg(conflicts_with_all = ["level", "replay"])]
     file: Option<PathBuf>,
     /// Turn the sound off

@@ -29,7 +29,8 @@ const REPLAY: &str = "tamaire";
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Without a window")]
 pub struct Options {
-    /// Level, by name (see --list) or by file (.toml, .png or .vox). Without a window the default is classic
+    /// Level, by name (see --list) or by file (a level, a picture or a MagicaVoxel model). Without a window the
+    /// default is classic
     #[arg(long, help_heading = None::<&'static str>, value_name = "NAME or FILE")]
     pub level: Option<String>,
     /// Bot that plays

@@ -1,13 +1,15 @@
 //! Levels. A level is a text file with a scene and a table `[game]`.
 
+mod frame;
 mod room;
 
 use crate::Route;
+use frame::BodySize;
 use fuwafuwa::inspect::Hash;
 use fuwafuwa::{Dim, Dim2, Dim3, Shape, Vec3, World};
+use fuwafuwa_scenes::import::FileType;
 use fuwafuwa_scenes::scene::{
     BodyText, Fetch, GameText, MAX_TEXT_BYTES, MotionTypeText, RigidBodyText, Scene, SceneError,
-    extension_of,
 };
 use std::any::Any;
 use std::io;
@@ -113,9 +115,6 @@ const FILES: [(&str, &[u8]); 2] = [
     ("pudding.vox", include_bytes!("../levels/pudding.vox")),
 ];
 
-/// Built-in level in which a picture or a model replaces the body, by file extension.
-const FRAMES: [(&str, &str); 2] = [("png", "classic"), ("vox", "classic-3d")];
-
 impl Level {
     /// Opens a built-in level.
     ///
@@ -139,21 +138,41 @@ impl Level {
         Self::unbuilt(id, scene)
     }
 
-    /// Reads a level from the bytes of a file named `id`: a scene with a table `[game]` (.toml), a picture
-    /// whose silhouette becomes the body (.png), or a MagicaVoxel model (.vox). `fetch` loads the files that
-    /// a scene names.
+    /// Reads a level from the bytes of a file named `id`: a scene with a table `[game]`, or a picture or a
+    /// MagicaVoxel model that becomes the body of a level. The content decides the type, not the name. `fetch`
+    /// loads the files that a scene names.
     ///
     /// # Errors
     /// [`LevelError`] with the problem and its line.
     pub fn read(id: &str, bytes: &[u8], fetch: Fetch) -> Result<Self, LevelError> {
-        let ending = extension_of(id);
-        if let Some((_, frame)) = FRAMES.iter().find(|(made_from, _)| *made_from == ending) {
+        let found = FileType::of(bytes);
+        if let Some(frame) = frame::of(found) {
             return Self::framed(frame, id, bytes).map_err(|error| attribute_to_file(id, error));
+        }
+        if !found.is_plain_text() || found == FileType::Empty {
+            let reason = format!("expected a level, a picture or a model, found {found}");
+            return Err(LevelError::Unreadable(id.into(), reason));
         }
         let mut scene = without_assists(Scene::read(id, text_in(id, bytes, MAX_TEXT_BYTES)?, &[])?);
         scene.embed_files(fetch)?;
         forget_folders(&mut scene);
         Self::from_scene(id, scene)
+    }
+
+    /// Returns whether the content of a file is that of a level, or a picture or model that becomes one.
+    pub fn is_in(bytes: &[u8]) -> bool {
+        Self::is_text_in(bytes) || Self::is_body_in(bytes)
+    }
+
+    /// Returns whether the content of a file is a text with the table `[game]` of a level, perhaps with
+    /// mistakes.
+    pub fn is_text_in(bytes: &[u8]) -> bool {
+        has_line(bytes, "[game]")
+    }
+
+    /// Returns whether the content of a file is a picture or a model, which becomes the body of a level.
+    pub fn is_body_in(bytes: &[u8]) -> bool {
+        frame::of(FileType::of(bytes)).is_some()
     }
 
     /// Reads a level that was stored with [`Level::text_to_keep`].
@@ -179,6 +198,7 @@ impl Level {
     fn framed(frame: &str, id: &str, bytes: &[u8]) -> Result<Self, LevelError> {
         let mut level = Self::open(frame)?;
         level.id = id.into();
+        let before = BodySize::of(&level.scene)?;
         let name = file_name(id);
         if let Some(body) = level.scene.body.first_mut() {
             (body.shape, body.file) = (None, Some(name.into()));
@@ -192,6 +212,7 @@ impl Level {
         level.game.name.ja = None;
         level.scene.game = Some(level.game);
         level.scene.embed_files(&|_| Ok(bytes.to_vec()))?;
+        frame::fit_body(&mut level.scene, &before)?;
         Self::from_scene(id, level.scene)
     }
 
@@ -377,6 +398,12 @@ fn nothing() -> io::Result<Vec<u8>> {
     Err(io::ErrorKind::NotFound.into())
 }
 
+/// Returns whether the bytes are a text with a line that begins with `beginning`.
+pub(crate) fn has_line(bytes: &[u8], beginning: &str) -> bool {
+    let text = std::str::from_utf8(bytes).unwrap_or_default();
+    text.lines().any(|line| line.starts_with(beginning))
+}
+
 /// Returns the bytes of a file as a text. Fails if the file has more than `most` bytes or is no text.
 fn text_in<'a>(id: &str, bytes: &'a [u8], most: u64) -> Result<&'a str, LevelError> {
     let wrong = |reason: String| LevelError::Unreadable(id.into(), reason);
@@ -387,7 +414,10 @@ fn text_in<'a>(id: &str, bytes: &'a [u8], most: u64) -> Result<&'a str, LevelErr
         )));
     }
     let text = std::str::from_utf8(bytes);
-    text.map_err(|error| wrong(format!("expected a text in UTF-8: {error}")))
+    text.map_err(|_| {
+        let found = FileType::of(bytes);
+        wrong(format!("expected a text in UTF-8, found {found}"))
+    })
 }
 
 /// Makes an error in a body name the file from which the body was made. The player chose the file, not the

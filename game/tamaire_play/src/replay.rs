@@ -1,6 +1,6 @@
 //! Recorded rounds, to be stored, watched, raced and shared.
 
-use crate::level::{LevelError, stem};
+use crate::level::{LevelError, has_line, stem};
 use crate::round::MAX_TICKS;
 use crate::{AnyRound, InputFrame, Level, Outcome, Round};
 use fuwafuwa::Dim;
@@ -96,6 +96,11 @@ impl Replay {
             frames: round.frames().iter().map(InputFrame::row).collect(),
             scene: level.scene().clone(),
         }
+    }
+
+    /// Returns whether the content of a file is that of a replay, perhaps damaged.
+    pub fn is_in(bytes: &[u8]) -> bool {
+        has_line(bytes, "level_hash")
     }
 
     /// Reads a replay from the bytes of a file.

@@ -176,9 +176,14 @@ fn invalid_level_is_reported_with_its_line() {
     let picture = Level::read("mine.png", b"not a picture", &nothing);
     let picture = picture.unwrap_err().to_string();
     assert!(picture.contains("mine.png"), "{picture}");
-    let other = Level::read("mine.toml", b"\xff", &nothing).unwrap_err();
-    assert!(
-        other.to_string().contains("expected a text in UTF-8"),
-        "{other}"
-    );
+    for (bytes, found) in [
+        (&b"\xff"[..], "an unknown type of file"),
+        (b"", "an empty file"),
+        (b"%PDF-1.7", "a PDF document"),
+        (b"d\0i\0m\0 \0=\0 \02\0", "a text in UTF-16, not in UTF-8"),
+    ] {
+        let other = Level::read("mine.toml", bytes, &nothing).unwrap_err();
+        let expected = format!("mine.toml: expected a level, a picture or a model, found {found}");
+        assert_eq!(other.to_string(), expected);
+    }
 }

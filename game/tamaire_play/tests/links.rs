@@ -270,7 +270,10 @@ fn link_contains_pictures_and_models_that_fit() {
     }
 
     // A picture of noise cannot be compressed, so its link must be too long.
-    let level = Arc::new(made_of("noise.png", &noise()));
+    let (_, classic) = NAMED[0];
+    let text = classic.replace("shape = \"ball\"", "file = \"noise.png\"\nplain = true");
+    let level = Level::read("noise.toml", text.as_bytes(), &|_| Ok(noise()));
+    let level = Arc::new(level.unwrap());
     let replay = played(&level, BotKind::Idle, 1, 1);
     for refused in [level.link(), replay.link()] {
         let Err(LinkError::TooLong { found }) = refused else {

@@ -1,4 +1,4 @@
-//! Shapes from files: PNG silhouettes in 2D, MagicaVoxel models (`.vox`) in 3D.
+//! Shapes from files: pictures in 2D, MagicaVoxel models (`.vox`) in 3D.
 //!
 //! ```no_run
 //! # use bevy_asset::AssetServer;
@@ -20,7 +20,7 @@ use bevy_asset::io::Reader;
 use bevy_asset::{Asset, AssetLoader, AsyncReadExt, LoadContext};
 use bevy_reflect::TypePath;
 use fuwafuwa::{Dim, Dim2, Dim3, VoxelGrid};
-use fuwafuwa_scenes::import::{Colours, Model, png};
+use fuwafuwa_scenes::import::{Colours, Model, picture};
 pub use fuwafuwa_scenes::import::{ImportError, ImportNote, MAX_FILE_BYTES, NoteKind};
 use serde::{Deserialize, Serialize};
 use std::{fmt, io};
@@ -88,9 +88,9 @@ impl From<ImportError> for VoxelsError {
     }
 }
 
-/// Reads PNG files as [`Voxels<Dim2>`]. If the picture has transparency, opaque pixels are solid; otherwise
-/// dark or strongly coloured pixels are solid. Bevy's own loader still reads PNG files as images, because the
-/// requested asset type selects the loader.
+/// Reads PNG, JPEG, WebP, GIF and BMP files as [`Voxels<Dim2>`]. If the picture has transparency, opaque pixels
+/// are solid; otherwise it is a drawing, whose closed outlines are filled. The empty margin is trimmed. Bevy's own
+/// loader still reads these files as images, because the requested asset type selects the loader.
 #[derive(Copy, Clone, Debug, Default, TypePath)]
 pub struct SilhouetteLoader;
 
@@ -112,17 +112,16 @@ impl AssetLoader for SilhouetteLoader {
     ) -> Result<Voxels<Dim2>, VoxelsError> {
         let bytes = bytes_of(reader).await?;
         let file = context.path().to_string();
-        let grid = png(&file, &bytes, settings.max_across, settings.voxel_size)?;
-        let (colours, notes) = (Vec::new(), Vec::new());
+        let import = picture(&file, &bytes, settings.max_across, settings.voxel_size)?;
         Ok(Voxels {
-            grid,
-            colours,
-            notes,
+            grid: import.grid,
+            colours: Vec::new(),
+            notes: import.notes,
         })
     }
 
     fn extensions(&self) -> &[&str] {
-        &["png"]
+        &["png", "jpg", "jpeg", "webp", "gif", "bmp"]
     }
 }
 

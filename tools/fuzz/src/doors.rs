@@ -10,7 +10,7 @@ use fuwafuwa::{
     Dim, Dim2, Dim3, Material, SoftBody, Vec3, VoxelGrid, World, WorldConfig, snapshot,
 };
 use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
-use fuwafuwa_scenes::import::{Colours, Model, Picture};
+use fuwafuwa_scenes::import::{Colours, Model, Picture, PictureOptions};
 use fuwafuwa_scenes::scene::BodyText;
 use fuwafuwa_scenes::{Recording, Scene};
 use fuwafuwa_surgery::record::Recording as Procedure;
@@ -55,7 +55,16 @@ pub fn png(bytes: &[u8]) -> bool {
     let plain = picture.grid(32, 0.1, &colours);
     colours.named.extend([([255, 0, 0], 1), ([0, 0, 255], 2)]);
     let coloured = picture.grid(MAX_EXTENT.min(48), 0.1, &colours);
-    [plain, coloured].into_iter().flatten().for_each(drop_in);
+    let options = PictureOptions {
+        across: 32,
+        voxel_size: 0.1,
+        ..PictureOptions::default()
+    };
+    let drawn = picture.import(&options).map(|import| import.grid);
+    [plain, coloured, drawn]
+        .into_iter()
+        .flatten()
+        .for_each(drop_in);
     true
 }
 

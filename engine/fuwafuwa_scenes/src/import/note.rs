@@ -46,6 +46,16 @@ pub enum NoteKind {
         /// Number of voxels for which the models have different colours.
         voxels: usize,
     },
+    /// Things along the edge of a picture, such as the table below the paper, were left out.
+    Surroundings {
+        /// Number of things.
+        left_out: usize,
+    },
+    /// Specks of a drawing that are smaller than a quarter of a voxel were left out.
+    Specks {
+        /// Number of specks.
+        left_out: usize,
+    },
     /// The solid voxels do not hang together: the body falls apart at once.
     Pieces {
         /// Number of pieces. Voxels hang together if they share a face (an edge in 2D).
@@ -140,6 +150,17 @@ impl fmt::Display for NoteKind {
                 let unit = if voxels == 1 { "voxel" } else { "voxels" };
                 write!(f, "models of different colours overlap in {voxels} {unit}")
             }
+            Self::Surroundings { left_out: 1 } => {
+                write!(f, "what lies along the edge of the picture is left out")
+            }
+            Self::Surroundings { left_out } => {
+                write!(
+                    f,
+                    "{left_out} things along the edge of the picture are left out"
+                )
+            }
+            Self::Specks { left_out: 1 } => write!(f, "a speck is left out"),
+            Self::Specks { left_out } => write!(f, "{left_out} specks are left out"),
             Self::Pieces { pieces, touch } => {
                 let how = match touch {
                     true => "some touch only along edges or at corners, which does not hold",

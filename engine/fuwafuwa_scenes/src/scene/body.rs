@@ -41,13 +41,13 @@ pub struct MaterialText {
 pub struct BodyText {
     /// Basic shape that fills the grid.
     pub shape: Option<Form>,
-    /// File in place of a shape: a silhouette (.png, in 2D) or a MagicaVoxel model (.vox, in 3D). The path is
-    /// relative to the folder of the scene.
+    /// File in place of a shape: a picture (in 2D) or a MagicaVoxel model (in 3D). Its content decides the
+    /// type, not its name. The path is relative to the folder of the scene.
     pub file: Option<String>,
     /// Name of the part of a MagicaVoxel file that becomes the body: a model or a group. Default: all visible
     /// models. Removed when the part is embedded.
     pub model: Option<String>,
-    /// Content of `file` in base64, once it is embedded.
+    /// Content of `file` in base64, once it is embedded. Its pixels count as they are, as with `plain`.
     pub content: Option<String>,
     /// List of voxels in place of a shape.
     pub voxels: Option<VoxelsText>,
@@ -59,6 +59,13 @@ pub struct BodyText {
     /// Number of voxels across, required for a shape. For a silhouette, the maximum number on the longer
     /// side; not allowed for a model.
     pub n: Option<usize>,
+    /// Whether closed outlines of a drawing are filled, default true; see
+    /// [`PictureOptions::fill`](crate::import::PictureOptions::fill).
+    pub fill: Option<bool>,
+    /// Whether the pixels of a picture count as they are, as for pixel art: the empty margin is kept, outlines
+    /// are not filled and strokes are not thickened; see [`Picture::grid`](crate::import::Picture::grid).
+    /// Default false.
+    pub plain: Option<bool>,
     /// Width of the grid [m]; for a file, length of the longest side of its solid part. Default 1.
     pub width: f32,
     /// Number of voxels on each axis in multiples of `n`, e.g. [3.0, 1.0, 1.0]; only for a box or an empty
@@ -278,6 +285,8 @@ impl Default for BodyText {
             voxels: None,
             state: None,
             n: None,
+            fill: None,
+            plain: None,
             width: 1.0,
             proportions: [1.0; 3],
             material: None,

@@ -1,25 +1,29 @@
-//! Files embedded in a scene, so that it is self-contained: small pictures whole, large ones and models
-//! reduced to the voxels of their bodies.
+//! Files embedded in a scene, so that it is self-contained. A picture is embedded as the voxels of its body,
+//! so later changes of the rules for pictures do not change the scene.
 
-use super::body::{BodyText, extension_of};
+use super::body::BodyText;
 use super::budget::Budget;
 use super::error::FieldError;
-use super::grid::{check_across, colours};
-use crate::import::{FilePosition, ImportError, ImportNote, Model, Picture, Problem};
+use super::grid::{check_across, colours, wrong_type};
+use crate::import::{
+    FilePosition, FileType, ImportError, ImportNote, Model, Picture, PictureOptions, Problem,
+    png_of,
+};
 use fuwafuwa::MAX_EXTENT;
 use std::io;
 
-/// Maximum size of a picture that is embedded whole [bytes]. Larger files, such as photos, are reduced to the
-/// voxels of their bodies.
+/// Maximum size of a file that is embedded whole, if its body allows that [bytes]. Larger files are reduced to
+/// the voxels of their bodies.
 const SMALL: usize = 1 << 16;
 
 /// Function that reads a picture or a model named in a scene. It decides where files are searched.
 pub type Fetch<'a> = &'a dyn Fn(&str) -> io::Result<Vec<u8>>;
 
 impl BodyText {
-    /// Embeds the file of the body. Returns notes on what was left out of the file or may surprise.
+    /// Embeds the file of the body in a scene of `dim` dimensions. Returns the notes of its import.
     pub(super) fn embed_file(
         &mut self,
+        dim: u8,
         fetch: Fetch,
         budget: &mut Budget,
     ) -> Result<Vec<ImportNote>, FieldError> {
@@ -33,16 +37,51 @@ impl BodyText {
                 problem: Problem::Unreadable(error),
             })
         })?;
-        if extension_of(&file) == "vox" {
-            return self.embed_model(&file, &bytes, budget);
+        budget.take_pixels(bytes.len(), 1)?;
+        let found = FileType::of(&bytes);
+        match dim {
+            2 if found.is_readable_picture() => self.embed_picture(&file, bytes, budget),
+            3 if found == FileType::Vox => self.embed_model(&file, &bytes, budget),
+            _ => Err(wrong_type(&file, found, dim.into())),
         }
-        // An invalid file is embedded whole, and its error is reported when the body is built.
-        let less = match bytes.len() > SMALL {
-            true => self.reduced_picture(&file, &bytes, budget)?,
-            false => None,
+    }
+
+    /// Embeds a PNG file with one pixel per voxel of the body. Takes the fields that only the import needs. A
+    /// small PNG file whose pixels count as they are is embedded whole.
+    fn embed_picture(
+        &mut self,
+        file: &str,
+        bytes: Vec<u8>,
+        budget: &mut Budget,
+    ) -> Result<Vec<ImportNote>, FieldError> {
+        let across = self.n.unwrap_or(MAX_EXTENT);
+        check_across(across)?;
+        let colours = colours(self)?;
+        let picture = Picture::decode(file, &bytes).map_err(FieldError::file)?;
+        budget.take_pixels(picture.size().iter().product(), colours.named.len())?;
+        let fill = self.fill.take().unwrap_or(true);
+        let is_plain = self.plain.take().unwrap_or(false);
+        if is_plain && bytes.len() <= SMALL && FileType::of(&bytes) == FileType::Png {
+            self.embed(&bytes);
+            return Ok(Vec::new());
+        }
+        let (grid, notes) = if is_plain {
+            let grid = picture.grid(across, 1.0, &colours);
+            (grid.map_err(FieldError::file)?, Vec::new())
+        } else {
+            let options = PictureOptions {
+                across,
+                voxel_size: 1.0,
+                colours: colours.clone(),
+                fill,
+            };
+            let import = picture.import(&options).map_err(FieldError::file)?;
+            (import.grid, import.notes)
         };
-        self.embed(&less.unwrap_or(bytes));
-        Ok(Vec::new())
+        let reduced = png_of(&grid, &colours);
+        let missing = || FieldError::new("colours", "expected a colour for each material");
+        self.embed(&reduced.ok_or_else(missing)?);
+        Ok(notes)
     }
 
     /// Embeds the visible models of a file, or the part of it that the body is made from. A file that is no
@@ -71,26 +110,5 @@ impl BodyText {
             .ok()
             .and_then(Result::ok)
             .map_or_else(Vec::new, |import| import.notes))
-    }
-
-    /// Returns a smaller picture that gives the same voxels; `None` if the file is invalid.
-    fn reduced_picture(
-        &self,
-        file: &str,
-        bytes: &[u8],
-        budget: &mut Budget,
-    ) -> Result<Option<Vec<u8>>, FieldError> {
-        if extension_of(file) != "png" {
-            return Ok(None);
-        }
-        budget.take_pixels(bytes.len(), 1)?;
-        let across = self.n.unwrap_or(MAX_EXTENT);
-        let known = check_across(across).and_then(|()| colours(self));
-        let picture = Picture::decode(file, bytes);
-        let (Ok(colours), Ok(picture)) = (known, picture) else {
-            return Ok(None);
-        };
-        budget.take_pixels(picture.size().iter().product(), colours.named.len())?;
-        Ok(picture.reduced_png(across, &colours))
     }
 }

@@ -1,10 +1,10 @@
 //! Construction of a body's voxel grid from its table in a scene.
 
-use super::body::{BodyText, Form, PartText, VoxelsText, extension_of};
+use super::body::{BodyText, Form, PartText, VoxelsText};
 use super::budget::Budget;
 use super::error::{FieldError, require, shortened};
 use super::shapes::ShapeChoice;
-use crate::import::{Colours, Model, Picture};
+use crate::import::{Colours, FilePosition, FileType, Model, Picture, in_file, unexpected};
 use fuwafuwa::MAX_EXTENT;
 use fuwafuwa::inspect::points_in;
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Error, Shape, VoxelGrid};
@@ -17,12 +17,15 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
     let good = text.width > 0.0 && text.width.is_finite();
     let expected = format!("expected a positive number of metres, found {}", text.width);
     require(good, "width", expected)?;
-    let is_model = text
-        .file
-        .as_ref()
-        .is_some_and(|file| extension_of(file) == "vox");
+    let expected = "only for a picture whose content is not embedded yet";
+    require(text.fill.is_none(), "fill", expected)?;
+    require(text.plain.is_none(), "plain", expected)?;
     let expected = "only a .vox file has parts with names";
-    require(text.model.is_none() || is_model, "model", expected)?;
+    require(
+        text.model.is_none() || text.file.is_some(),
+        "model",
+        expected,
+    )?;
     let mut voxels = match (text.shape, &text.file, &text.voxels) {
         (Some(form), None, None) => of_form::<D>(text, form, budget)?,
         (None, Some(file), None) => of_file::<D>(text, file, budget)?,
@@ -194,9 +197,12 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
     )?;
     let colours = colours(text)?;
     let named = !text.colours.is_empty();
-    let (name, dim) = (shortened(file, 200), D::N);
-    match (extension_of(file).as_str(), D::N) {
-        ("png", Dim2::N) => {
+    let name = shortened(file, 200);
+    let bytes = text.file_bytes()?;
+    match (FileType::of(&bytes), D::N) {
+        (found, Dim2::N) if found.is_readable_picture() => {
+            let expected = "only a .vox file has parts with names";
+            require(text.model.is_none(), "model", expected)?;
             let across = text.n.unwrap_or(MAX_EXTENT);
             check_across(across)?;
             let both = named && text.material.is_some();
@@ -205,7 +211,6 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
                 "material",
                 "not allowed together with colours, which name the materials",
             )?;
-            let bytes = text.file_bytes()?;
             let picture = Picture::decode(&name, &bytes).map_err(FieldError::file)?;
             let pixels: usize = picture.size().iter().product();
             budget.take_pixels(pixels, colours.named.len())?;
@@ -217,13 +222,12 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
                 if named { solid } else { solid * material }
             }))
         }
-        ("vox", Dim3::N) => {
+        (FileType::Vox, Dim3::N) => {
             let expected =
                 "not allowed for a model, which has a fixed number of voxels; expected only width";
             require(text.n.is_none(), "n", expected)?;
             let expected = "the palette indices of a model are its materials, see colours";
             require(text.material.is_none(), "material", expected)?;
-            let bytes = text.file_bytes()?;
             let model = Model::decode_part(&name, &bytes, text.model.as_deref());
             let model = model.map_err(FieldError::file)?;
             budget.take_model(model.work())?;
@@ -231,13 +235,18 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
             budget.check_model(grid.size())?;
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| solid))
         }
-        _ => {
-            let reason = format!(
-                "expected .png for dim = 2 or .vox for dim = 3, found {name} for dim = {dim}"
-            );
-            Err(FieldError::new("file", reason))
-        }
+        (found, dim) => Err(wrong_type(&name, found, dim)),
     }
+}
+
+/// Returns the error of a file whose type does not suit a scene of `dim` dimensions.
+pub(super) fn wrong_type(file: &str, found: FileType, dim: usize) -> FieldError {
+    let expected = match dim {
+        2 => "a picture (PNG, JPEG, WebP, GIF or BMP) for dim = 2",
+        _ => "a MagicaVoxel model for dim = 3",
+    };
+    let problem = unexpected(FilePosition::File, expected, found);
+    FieldError::file(in_file::<()>(&shortened(file, 200), Err(problem)).unwrap_err())
 }
 
 pub(super) fn check_across(n: usize) -> Result<(), FieldError> {

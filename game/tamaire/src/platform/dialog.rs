@@ -22,7 +22,11 @@ impl Dialog {
         if self.0.is_some() {
             return;
         }
-        let endings = ["toml", "tamaire", "png", "vox"];
+        // Some systems distinguish upper and lower case here.
+        let endings = [
+            "toml", "tamaire", "vox", "png", "jpg", "jpeg", "webp", "gif", "bmp", "VOX", "PNG",
+            "JPG", "JPEG", "WEBP", "GIF", "BMP",
+        ];
         // The dialog is created on the window's thread, as some systems require, and awaited on another
         // thread.
         let asked = rfd::AsyncFileDialog::new().add_filter(kind, &endings);

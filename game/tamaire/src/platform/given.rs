@@ -25,18 +25,20 @@ pub enum DialogResult {
 }
 
 impl OpenRequest {
-    /// Reads a replay, level, picture or model from the bytes of a file. The extension in `name` decides the
-    /// type. `fetch` loads the files that a level refers to.
+    /// Reads a replay, level, picture or model from the bytes of a file. The content decides the type. `fetch`
+    /// loads the files that a level refers to.
     pub fn read(name: &str, bytes: &[u8], fetch: Fetch) -> Self {
-        match is_replay(name) {
+        match is_replay(name, bytes) {
             true => Self::Replay(name.into(), Replay::of_bytes(bytes).map(Box::new)),
             false => Self::Level(Level::read(name, bytes, fetch).map(Box::new)),
         }
     }
 }
 
-fn is_replay(name: &str) -> bool {
-    extension_of(name) == "tamaire"
+/// Returns whether a file is a replay. The name decides only for content that is neither a level nor a replay, so
+/// that the error names what the player meant.
+fn is_replay(name: &str, bytes: &[u8]) -> bool {
+    Replay::is_in(bytes) || !Level::is_in(bytes) && extension_of(name) == "tamaire"
 }
 
 #[cfg(not(target_family = "wasm"))]
@@ -59,7 +61,9 @@ mod on_disk {
             if location.contains('#') && !path.exists() {
                 return Self::Link(location.into());
             }
-            match is_replay(&location) {
+            // A file that cannot be read is refused below.
+            let bytes = read_bytes(path, MAX_FILE_BYTES).unwrap_or_default();
+            match is_replay(&location, &bytes) {
                 true => Self::Replay(location.into(), replay_in(path).map(Box::new)),
                 false => Self::Level(level_at(&location).map(Box::new)),
             }
@@ -129,6 +133,7 @@ mod on_page {
     use js_sys::Array;
     use std::collections::BTreeMap;
     use std::io;
+    use tamaire_play::Level;
     use tamaire_play::level::LevelError;
     use wasm_bindgen::JsCast;
 
@@ -151,12 +156,12 @@ mod on_page {
             let found = files.get(name).and_then(|(bytes, _)| bytes.clone());
             found.ok_or_else(|| io::ErrorKind::NotFound.into())
         };
-        let is_level = |name: &str| name.ends_with(".toml");
-        let has_levels = files.keys().any(|name| is_level(name));
-        let is_part = |name: &str| name.ends_with(".png") || name.ends_with(".vox");
-        let own = files
-            .iter()
-            .filter(|(name, _)| !(has_levels && is_part(name)));
+        let contents = || files.values().filter_map(|(bytes, _)| bytes.as_deref());
+        let has_levels = contents().any(Level::is_text_in);
+        let own = files.iter().filter(|(_, (bytes, _))| {
+            let is_part = bytes.as_deref().is_some_and(Level::is_body_in);
+            !(has_levels && is_part)
+        });
         own.map(|(name, (bytes, length))| match bytes {
             Some(bytes) => OpenRequest::read(name, bytes, &fetch),
             None => {

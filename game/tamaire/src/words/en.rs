@@ -267,6 +267,10 @@ fn import_note(note: &ImportNote) -> String {
             };
             format!("{file} falls into {pieces} pieces.{how}")
         }
+        NoteKind::Surroundings { .. } => {
+            format!("{file}: what lies along the edge of the picture is left out.")
+        }
+        NoteKind::Specks { .. } => format!("{file}: small specks are left out."),
         _ => note.to_string(),
     }
 }

@@ -269,6 +269,10 @@ fn import_note(note: &ImportNote) -> String {
             };
             format!("{file} は{pieces}つに分かれます。{how}")
         }
+        NoteKind::Surroundings { .. } => {
+            format!("{file}：絵のふちにあるものは使いませんでした。")
+        }
+        NoteKind::Specks { .. } => format!("{file}：小さな点は使いませんでした。"),
         _ => note.to_string(),
     }
 }
@@ -340,7 +344,7 @@ mod tests {
         };
         let broken = refused("a.toml", "dim = 2\ngravity = \"down\"\n");
         assert!(broken.contains("読めません") && broken.contains("line 2"));
-        let model = refused("a.vox", "VOX");
+        let model = refused("a.vox", "VOX ");
         assert!(model.contains("体を作れませんでした。a.vox"), "{model}");
         let old = replay_error(&ReplayError::Version { found: 7 });
         assert!(old.contains("バージョン（7）"), "{old}");

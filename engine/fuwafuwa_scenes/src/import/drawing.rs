@@ -1,0 +1,134 @@
+//! Drawings: closed outlines become solid, and thin strokes become thick enough to hold.
+
+use super::mask::{Component, Extent, Mask, longer};
+use super::note::NoteKind;
+
+/// Maximum number of pixels per voxel at which shapes are worked on.
+const DETAIL: usize = 8;
+/// Maximum area of a speck of noise [voxels²].
+const SPECK: f64 = 0.25;
+/// Radius by which outlines are closed before they are filled [voxels]. Gaps of twice this width close.
+const CLOSED: f64 = 0.6;
+/// Rounds in which strokes are thickened: radius of the disc that does not fit into a stroke which is too thin,
+/// and radius by which the stroke then grows [voxels]. A stroke 1.5 voxels wide holds at any angle: the voxels
+/// of which it covers at least half share edges.
+const THICKENED: [(f64, f64); 2] = [(0.375, 0.8), (0.75, 0.4)];
+/// Share of the edge of a picture along which something lies that is not part of the drawing, such as a table
+/// below the paper.
+const SURROUNDING: f64 = 0.2;
+/// Minimum size of a drawing on such paper, as a share of the picture's area.
+const LEAST_DRAWING: f64 = 0.02;
+
+/// Solid part of a drawing.
+pub(super) struct Solid {
+    /// Solid pixels, trimmed. The mask has no pixel if the drawing has none.
+    pub mask: Mask,
+    /// Notes on what was left out.
+    pub notes: Vec<NoteKind>,
+}
+
+/// Returns the solid part of a drawing with at most `across` voxels on its longer side. Closed outlines are
+/// filled if `fill` is set.
+pub(super) fn solid(ink: &Mask, across: usize, fill: bool) -> Solid {
+    let (ink, surroundings) = without_surroundings(ink);
+    let (ink, specks) = without_specks(&ink, across);
+    let ink = ink.reduced((ink.longer() / (DETAIL * across)).max(1));
+    let surroundings = (surroundings > 0).then_some(NoteKind::Surroundings {
+        left_out: surroundings,
+    });
+    let specks = (specks > 0).then_some(NoteKind::Specks { left_out: specks });
+    Solid {
+        mask: held(ink, across, fill).trimmed(),
+        notes: surroundings.into_iter().chain(specks).collect(),
+    }
+}
+
+/// Removes what lies along the edge of a picture, if a drawing remains. Returns the number of components that
+/// were removed.
+fn without_surroundings(ink: &Mask) -> (Mask, usize) {
+    let components = ink.components();
+    let [width, height] = ink.size;
+    let is_around = |component: &Component| {
+        component.at_edge as f64 > SURROUNDING * 2.0 * (width + height) as f64
+    };
+    let is_drawing = |component: &Component| {
+        let [columns, rows] = &component.extent;
+        let share = (columns.len() * rows.len()) as f64 / (width * height) as f64;
+        !is_around(component) && share >= LEAST_DRAWING
+    };
+    let around = components
+        .list
+        .iter()
+        .filter(|component| is_around(component))
+        .count();
+    if around == 0 || !components.list.iter().any(is_drawing) {
+        return (ink.clone(), 0);
+    }
+    let drawing = components.kept(ink.size, |component| !is_around(component));
+    (drawing, around)
+}
+
+/// Removes specks, and trims what remains. Returns the number of specks.
+fn without_specks(ink: &Mask, across: usize) -> (Mask, usize) {
+    let components = ink.components();
+    let largest = components.list.iter().map(|component| component.area).max();
+    let limit = |extent: &Extent| SPECK * (longer(extent) as f64 / across as f64).powi(2);
+    // Specks far away make the extent of all ink, and so its voxels, too large. Within the extent of what is
+    // large even then, smaller things count.
+    let coarse = limit(&ink.extent());
+    let is_large =
+        |component: &Component| component.area as f64 >= coarse || Some(component.area) == largest;
+    let drawing = components.kept(ink.size, is_large).extent();
+    let fine = limit(&drawing);
+    let is_kept = |component: &Component| {
+        let is_inside = (0..2).all(|axis| {
+            let (own, all) = (&component.extent[axis], &drawing[axis]);
+            own.start < all.end && all.start < own.end
+        });
+        is_large(component) || is_inside && component.area as f64 >= fine
+    };
+    let specks = components
+        .list
+        .iter()
+        .filter(|component| !is_kept(component))
+        .count();
+    (components.kept(ink.size, is_kept).trimmed(), specks)
+}
+
+/// Returns ink with closed outlines filled and thin strokes thickened, so that voxels of which at least half is
+/// solid hold together.
+fn held(ink: Mask, across: usize, fill: bool) -> Mask {
+    let voxel = ink.longer() as f64 / across as f64;
+    let ink = ink.padded((2.0 * voxel) as usize + 1);
+    // Each pixel becomes a voxel, so no stroke is too thin.
+    let keeps_pixels = voxel <= 1.0;
+    let solid = match fill {
+        true => filled(&ink, if keeps_pixels { 0.0 } else { CLOSED * voxel }),
+        false => ink,
+    };
+    if keeps_pixels {
+        return solid;
+    }
+    let thicker =
+        |solid: Mask, (thin, by): (f64, f64)| thickened(solid, voxel, thin * voxel, by * voxel);
+    THICKENED.into_iter().fold(solid, thicker)
+}
+
+/// Returns a mask with its strokes grown by a radius `by`, if a disc of radius `thin` does not fit into them
+/// [pixels].
+fn thickened(solid: Mask, voxel: f64, thin: f64, by: f64) -> Mask {
+    // The discs are larger by a pixel and a half, because discs of pixels do not fit exactly along edges.
+    let thick = solid.clone().eroded(thin).dilated(thin + 1.5);
+    let strokes = solid.clone().and(&thick.inverted()).components();
+    // Corners of thick parts are thin, too, but short.
+    let strokes = strokes.kept(solid.size, |component| {
+        longer(&component.extent) as f64 > voxel
+    });
+    solid.or(&strokes.dilated(by))
+}
+
+/// Returns ink with everything that the paper around it cannot reach, if gaps of twice `radius` [pixels] are
+/// closed.
+fn filled(ink: &Mask, radius: f64) -> Mask {
+    ink.dilated(radius).outside().inverted().eroded(radius)
+}

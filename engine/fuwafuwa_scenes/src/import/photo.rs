@@ -1,0 +1,59 @@
+//! Decoding of pictures other than PNG: photos, and what programs and web sites store.
+
+use super::content::FileType;
+use super::error::{FilePosition, PositionedProblem, unexpected};
+use super::picture::{MAX_PIXELS, Pixels, check_size};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Limits};
+use std::io::Cursor;
+
+/// Maximum memory for the pixels of a picture and the decoder's own tables [bytes]: three channels of 16 bits
+/// would not fit, but no format here has them.
+const DECODER_BYTES: u64 = 5 * (MAX_PIXELS as u64) * (MAX_PIXELS as u64);
+
+/// Returns the decoder's name of a format that this module decodes.
+pub(super) fn format_of(file_type: FileType) -> Option<ImageFormat> {
+    Some(match file_type {
+        FileType::Jpeg => ImageFormat::Jpeg,
+        FileType::WebP => ImageFormat::WebP,
+        FileType::Gif => ImageFormat::Gif,
+        FileType::Bmp => ImageFormat::Bmp,
+        _ => return None,
+    })
+}
+
+/// Decodes a picture, turned as its EXIF orientation says. `file_type` names the format in errors.
+pub(super) fn decode(
+    bytes: &[u8],
+    format: ImageFormat,
+    file_type: FileType,
+) -> Result<Pixels, PositionedProblem> {
+    decode_as(bytes, format)
+        .unwrap_or_else(|error| Err(unexpected(FilePosition::File, file_type.to_string(), error)))
+}
+
+fn decode_as(bytes: &[u8], format: ImageFormat) -> ImageResult<Result<Pixels, PositionedProblem>> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    reader.limits(limits());
+    let mut decoder = reader.into_decoder()?;
+    let (width, height) = decoder.dimensions();
+    if let Err(problem) = check_size(FilePosition::File, [width, height]) {
+        return Ok(Err(problem));
+    }
+    let orientation = decoder.orientation()?;
+    let mut picture = DynamicImage::from_decoder(decoder)?;
+    picture.apply_orientation(orientation);
+    let picture = picture.into_rgba8();
+    let size = [picture.width() as usize, picture.height() as usize];
+    let (colours, _) = picture.as_chunks::<4>();
+    Ok(Ok(Pixels {
+        size,
+        colours: colours.to_vec(),
+    }))
+}
+
+/// Returns limits on memory. The size is checked here, where the error can name it.
+fn limits() -> Limits {
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(DECODER_BYTES);
+    limits
+}

@@ -1,0 +1,355 @@
+//! Drawings on paper become solid bodies: on clean paper, and in photos with lines, shadows and noise.
+
+#[allow(dead_code)]
+mod damage;
+mod picture;
+
+use damage::Noise;
+use fuwafuwa::{Dim2, VoxelGrid};
+use fuwafuwa_scenes::Scene;
+use fuwafuwa_scenes::import::{Import, NoteKind, Picture, PictureOptions};
+use picture::png_of;
+
+/// Paper on which shapes are drawn, in pixels from the top left.
+struct Sheet {
+    size: [usize; 2],
+    pixels: Vec<[f64; 3]>,
+}
+
+const WHITE: [f64; 3] = [255.0; 3];
+const BLACK: [f64; 3] = [0.0; 3];
+
+impl Sheet {
+    fn new(size: [usize; 2], colour: [f64; 3]) -> Self {
+        let pixels = vec![colour; size[0] * size[1]];
+        Self { size, pixels }
+    }
+
+    /// Paints the pixels whose centres `is_in` accepts.
+    fn paint(&mut self, colour: [f64; 3], is_in: impl Fn(f64, f64) -> bool) {
+        for (at, pixel) in self.pixels.iter_mut().enumerate() {
+            let (column, row) = (at % self.size[0], at / self.size[0]);
+            if is_in(column as f64 + 0.5, row as f64 + 0.5) {
+                *pixel = colour;
+            }
+        }
+    }
+
+    fn disc(&mut self, colour: [f64; 3], [x, y]: [f64; 2], radius: f64) {
+        self.paint(colour, |a, b| (a - x).hypot(b - y) <= radius);
+    }
+
+    /// Draws a circle with a pen of width `pen`, except where it is within `gap` right of the top.
+    fn circle(&mut self, colour: [f64; 3], [x, y]: [f64; 2], radius: f64, pen: f64, gap: f64) {
+        self.paint(colour, |a, b| {
+            let is_gap = b < y && (0.0..gap).contains(&(a - x));
+            !is_gap && ((a - x).hypot(b - y) - radius).abs() <= 0.5 * pen
+        });
+    }
+
+    fn line(&mut self, colour: [f64; 3], from: [f64; 2], to: [f64; 2], pen: f64) {
+        let along = [to[0] - from[0], to[1] - from[1]];
+        let square = along[0] * along[0] + along[1] * along[1];
+        self.paint(colour, |a, b| {
+            let by = [a - from[0], b - from[1]];
+            let share = ((by[0] * along[0] + by[1] * along[1]) / square).clamp(0.0, 1.0);
+            (by[0] - share * along[0]).hypot(by[1] - share * along[1]) <= 0.5 * pen
+        });
+    }
+
+    /// Draws a figure `high` pixels high: head with eyes, body, arms and legs.
+    fn figure(&mut self, ink: [f64; 3], [x, y]: [f64; 2], high: f64, pen: f64) {
+        let at = |a: f64, b: f64| [x + a * high, y + b * high];
+        self.circle(ink, at(0.0, -0.3), 0.2 * high, pen, 0.0);
+        self.circle(ink, at(0.0, 0.1), 0.2 * high, pen, 0.0);
+        for side in [-1.0, 1.0] {
+            self.disc(ink, at(0.07 * side, -0.33), 0.02 * high);
+            self.line(ink, at(0.19 * side, 0.05), at(0.4 * side, -0.1), pen);
+            self.line(ink, at(0.08 * side, 0.28), at(0.12 * side, 0.5), pen);
+        }
+    }
+
+    /// Adds a shadow that darkens the lower left corner to `darkest`, and noise of `deviation`.
+    fn photographed(&mut self, darkest: f64, deviation: f64) {
+        let mut noise = Noise(5);
+        let [width, height] = self.size.map(|side| side as f64);
+        for (at, pixel) in self.pixels.iter_mut().enumerate() {
+            let (column, row) = (at % self.size[0], at / self.size[0]);
+            let light = 0.6 * column as f64 / width + 0.4 * (1.0 - row as f64 / height);
+            let light = darkest + (1.0 - darkest) * light;
+            // The sum of four uniform numbers is close to a normal one.
+            let sum: usize = (0..4).map(|_| noise.below(1000)).sum();
+            let by = (sum as f64 - 1998.0) / 577.0 * deviation;
+            *pixel = pixel.map(|channel| (channel * light + by).clamp(0.0, 255.0));
+        }
+    }
+
+    fn png(&self) -> Vec<u8> {
+        let samples = self
+            .pixels
+            .iter()
+            .flat_map(|&[red, green, blue]| [red as u8, green as u8, blue as u8, 255]);
+        let samples: Vec<u8> = samples.collect();
+        png_of(self.size[0] as u32, self.size[1] as u32, &samples)
+    }
+
+    fn import(&self, across: usize, fill: bool) -> Import<Dim2> {
+        let options = PictureOptions {
+            across,
+            fill,
+            ..PictureOptions::default()
+        };
+        let picture = Picture::decode("test.png", &self.png()).unwrap();
+        picture.import(&options).unwrap()
+    }
+}
+
+fn count(grid: &VoxelGrid<Dim2>) -> f64 {
+    grid.solid_count() as f64
+}
+
+/// Returns the number of voxels of a disc.
+fn disc(across: f64) -> f64 {
+    std::f64::consts::FRAC_PI_4 * across * across
+}
+
+fn materials(grid: &VoxelGrid<Dim2>) -> Vec<u8> {
+    grid.voxels().map(|voxel| grid.material(voxel)).collect()
+}
+
+/// Returns the share of voxels that two grids of about the same size have in common.
+fn overlap(a: &VoxelGrid<Dim2>, b: &VoxelGrid<Dim2>) -> f64 {
+    let both = a
+        .voxels()
+        .filter(|&at| a.is_solid(at) && b.is_solid(at))
+        .count() as f64;
+    both / (count(a) + count(b) - both)
+}
+
+#[test]
+fn import_gives_same_body_with_any_margin() {
+    let bodies = [[120, 120], [240, 240], [720, 1020]].map(|size| {
+        let mut sheet = Sheet::new(size, WHITE);
+        let middle = size.map(|side| (side / 2) as f64);
+        sheet.disc(BLACK, middle, 60.0);
+        sheet.import(64, true)
+    });
+    for body in &bodies {
+        assert_eq!(body.grid.size(), [64, 64, 1]);
+        assert!((count(&body.grid) / disc(64.0) - 1.0).abs() < 0.01);
+        assert_eq!(materials(&body.grid), materials(&bodies[0].grid));
+        assert_eq!(body.notes, []);
+    }
+}
+
+#[test]
+fn import_fills_closed_outline_unless_fill_is_off() {
+    let mut sheet = Sheet::new([800, 900], WHITE);
+    sheet.circle([20.0, 20.0, 90.0], [400.0, 400.0], 300.0, 12.0, 0.0);
+    // Eyes in the head, which must not become loose pieces.
+    sheet.disc(BLACK, [320.0, 330.0], 20.0);
+    sheet.circle(BLACK, [480.0, 330.0], 20.0, 6.0, 0.0);
+    let filled = sheet.import(60, true);
+    assert!((count(&filled.grid) / disc(60.0) - 1.0).abs() < 0.02);
+    assert_eq!(filled.notes, []);
+
+    let hollow = sheet.import(60, false);
+    assert!(!hollow.grid.is_solid([30, 30, 0]));
+    // The pen is 1.2 voxels wide and becomes 2 voxels wide.
+    let ring = disc(60.0) - disc(56.0);
+    assert!(
+        (count(&hollow.grid) / ring - 1.0).abs() < 0.3,
+        "{}",
+        count(&hollow.grid)
+    );
+    let pieces = NoteKind::Pieces {
+        pieces: 3,
+        touch: false,
+    };
+    assert_eq!(hollow.notes[0].kind, pieces);
+}
+
+#[test]
+fn import_closes_gap_of_one_voxel_before_it_fills() {
+    let across = |gap: f64| {
+        let mut sheet = Sheet::new([700, 700], WHITE);
+        sheet.circle(BLACK, [350.0, 350.0], 300.0, 8.0, gap);
+        sheet.import(60, true).grid
+    };
+    // A voxel is 10 pixels wide.
+    assert!((count(&across(10.0)) / disc(60.0) - 1.0).abs() < 0.02);
+    assert!(count(&across(50.0)) < 0.3 * disc(60.0));
+}
+
+#[test]
+fn import_thickens_pen_thinner_than_a_voxel() {
+    // Pens of 2 pixels, voxels of 25, at all angles and places.
+    for k in 0..12 {
+        let angle = f64::from(k) * 0.26;
+        let (along, up) = (250.0 * angle.cos(), 250.0 * angle.sin());
+        let mut sheet = Sheet::new([600, 600], WHITE);
+        let middle = [300.0 + f64::from(k), 300.0];
+        let to = [middle[0] + along, middle[1] - up];
+        sheet.line(BLACK, [middle[0] - along, middle[1] + up], to, 2.0);
+        let body = sheet.import(20, true);
+        assert_eq!(body.notes, [], "{k}");
+        assert_eq!(body.grid.size().into_iter().max(), Some(20));
+        let found = count(&body.grid);
+        assert!((20.0..80.0).contains(&found), "{k}: {found}");
+    }
+}
+
+#[test]
+fn import_of_photo_gives_body_of_drawing() {
+    let mut clean = Sheet::new([600, 800], WHITE);
+    clean.figure(BLACK, [300.0, 400.0], 500.0, 7.0);
+    let clean = clean.import(64, true);
+    assert_eq!(clean.notes, []);
+    // Head and body of 0.4 of the height each, which overlap in nothing, and four limbs.
+    let discs = 2.0 * disc(0.4 * 64.0);
+    assert!((discs..1.25 * discs).contains(&count(&clean.grid)));
+
+    let paper = [250.0, 247.0, 235.0];
+    let (blue, grey) = ([30.0, 40.0, 130.0], [110.0, 108.0, 112.0]);
+    for (ink, faint, is_squared) in [
+        (blue, [175.0, 205.0, 238.0], false),
+        (blue, [175.0, 205.0, 238.0], true),
+        (grey, [225.0, 230.0, 238.0], false),
+    ] {
+        let mut sheet = Sheet::new([600, 800], paper);
+        // Ruled lines of a page that is turned a little.
+        sheet.paint(faint, |x, y| {
+            let across = is_squared && (x - 0.05 * y).rem_euclid(40.0) < 2.0;
+            across || (y + 0.05 * x).rem_euclid(40.0) < 2.0
+        });
+        sheet.figure(ink, [300.0, 400.0], 500.0, 7.0);
+        sheet.photographed(0.5, 5.0);
+        let body = sheet.import(64, true);
+        let shared = overlap(&clean.grid, &body.grid);
+        assert!(shared > 0.95, "{shared}");
+        let pieces = |kind: &NoteKind| matches!(kind, NoteKind::Pieces { .. });
+        assert!(!body.notes.iter().any(|note| pieces(&note.kind)));
+    }
+}
+
+#[test]
+fn import_leaves_out_table_below_paper_and_says_so() {
+    let mut sheet = Sheet::new([900, 1100], [110.0, 70.0, 45.0]);
+    sheet.paint([250.0, 248.0, 240.0], |x, y| {
+        (60.0..820.0).contains(&(x - 0.04 * y)) && (50.0..1000.0).contains(&(y + 0.04 * x))
+    });
+    sheet.circle(BLACK, [460.0, 500.0], 250.0, 10.0, 0.0);
+    sheet.photographed(0.7, 4.0);
+    let body = sheet.import(50, true);
+    assert!((count(&body.grid) / disc(50.0) - 1.0).abs() < 0.03);
+    let told: Vec<String> = body.notes.iter().map(ToString::to_string).collect();
+    let expected = "test.png: what lies along the edge of the picture is left out";
+    assert_eq!(told[0], expected);
+}
+
+#[test]
+fn import_tells_of_specks_and_loose_pieces() {
+    let mut sheet = Sheet::new([640, 640], WHITE);
+    sheet.circle(BLACK, [320.0, 320.0], 200.0, 10.0, 0.0);
+    // Voxels of 640 / 64 pixels: a dot of three voxels outside is a piece, and one of a fifth is a speck.
+    sheet.disc(BLACK, [590.0, 320.0], 25.0);
+    sheet.disc(BLACK, [40.0, 40.0], 1.0);
+    let body = sheet.import(64, true);
+    let kinds: Vec<&NoteKind> = body.notes.iter().map(|note| &note.kind).collect();
+    let pieces = NoteKind::Pieces {
+        pieces: 2,
+        touch: false,
+    };
+    assert_eq!(kinds, [&NoteKind::Specks { left_out: 1 }, &pieces]);
+}
+
+#[test]
+fn speck_far_away_does_not_coarsen_drawing() {
+    let mut sheet = Sheet::new([900, 900], WHITE);
+    // A frame of 128 pixels with a dot of 6 pixels in it, which is 3 voxels wide.
+    sheet.line(BLACK, [40.0, 40.0], [168.0, 40.0], 4.0);
+    sheet.line(BLACK, [40.0, 40.0], [40.0, 168.0], 4.0);
+    sheet.disc(BLACK, [120.0, 120.0], 3.0);
+    let alone = sheet.import(64, false);
+    sheet.disc(BLACK, [880.0, 880.0], 1.5);
+    let beside_speck = sheet.import(64, false);
+    assert_eq!(materials(&beside_speck.grid), materials(&alone.grid));
+    assert_eq!(beside_speck.notes[0].kind, NoteKind::Specks { left_out: 1 });
+    assert!(matches!(
+        alone.notes[0].kind,
+        NoteKind::Pieces { pieces: 2, .. }
+    ));
+}
+
+#[test]
+fn error_of_blank_paper_names_missing_line() {
+    let mut sheet = Sheet::new([300, 400], [240.0, 240.0, 225.0]);
+    sheet.photographed(0.5, 4.0);
+    let picture = Picture::decode("test.png", &sheet.png()).unwrap();
+    let error = picture.import(&PictureOptions::default()).unwrap_err();
+    let expected = "test.png: the shape is empty: there is no line that is clearly darker or more coloured than the paper";
+    assert_eq!(error.to_string(), expected);
+}
+
+#[test]
+fn import_keeps_rules_of_sprites_but_trims_them() {
+    let clear = [0; 4];
+    let black = [0, 0, 0, 255];
+    let mut pixels = vec![clear; 60];
+    // A ring of 3 × 3 pixels with a hole, in a picture of 10 × 6.
+    for (row, column) in [
+        (1, 4),
+        (1, 5),
+        (1, 6),
+        (2, 4),
+        (2, 6),
+        (3, 4),
+        (3, 5),
+        (3, 6),
+    ] {
+        pixels[row * 10 + column] = black;
+    }
+    let bytes = png_of(10, 6, pixels.as_flattened());
+    let body = Picture::decode("test.png", &bytes).unwrap();
+    let body = body.import(&PictureOptions::default()).unwrap();
+    assert_eq!(materials(&body.grid), [1, 1, 1, 1, 0, 1, 1, 1, 1]);
+}
+
+#[test]
+fn scene_embeds_voxels_of_drawing_and_keeps_them() {
+    let mut sheet = Sheet::new([400, 400], WHITE);
+    sheet.circle(BLACK, [200.0, 150.0], 100.0, 6.0, 0.0);
+    let (bytes, expected) = (sheet.png(), sheet.import(40, true));
+    for (fields, solid) in [
+        ("", count(&expected.grid)),
+        ("fill = false", count(&sheet.import(40, false).grid)),
+    ] {
+        let text = format!("dim = 2\n[[body]]\nfile = \"a drawing\"\nn = 40\n{fields}\n");
+        let mut scene = Scene::read("toy.toml", &text, &[]).unwrap();
+        scene.embed_files(&|_| Ok(bytes.clone())).unwrap();
+        let world = scene.build::<Dim2>().unwrap();
+        let (_, body) = world.soft_bodies().next().unwrap();
+        assert_eq!(count(body.grid()), solid, "{fields}");
+        assert_eq!(body.grid().size(), [40, 40, 1]);
+        // Read again, the scene needs neither the file nor the rules for drawings.
+        let again = toml::to_string(&scene).unwrap();
+        assert_eq!(Scene::read("toy.toml", &again, &[]).unwrap(), scene);
+    }
+    let refused = |text: &str, bytes: &[u8]| {
+        let mut scene = Scene::read("toy.toml", text, &[]).unwrap();
+        scene
+            .embed_files(&|_| Ok(bytes.to_vec()))
+            .unwrap_err()
+            .to_string()
+    };
+    let flat = "dim = 2\n[[body]]\nfile = \"a.png\"\n";
+    assert_eq!(
+        refused(flat, b"VOX \x96\0\0\0MAIN"),
+        "toy.toml, line 3: body 1, file: a.png: expected a picture (PNG, JPEG, WebP, GIF or BMP) for dim = 2, found a MagicaVoxel model"
+    );
+    let deep = "dim = 3\n[[body]]\nfile = \"a.vox\"\n";
+    assert_eq!(
+        refused(deep, b"version https://git-lfs.github.com/spec/v1\n"),
+        "toy.toml, line 3: body 1, file: a.vox: expected a MagicaVoxel model for dim = 3, found a Git LFS pointer, not the file itself (run git lfs pull)"
+    );
+}

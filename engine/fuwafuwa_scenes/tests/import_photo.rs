@@ -1,0 +1,145 @@
+//! JPEG, WebP, GIF and BMP files become flat shapes, and no input bytes cause harm.
+
+mod damage;
+
+use damage::Noise;
+use fuwafuwa::Dim2;
+use fuwafuwa_scenes::import::{ImportError, Picture, PictureOptions, Problem, picture};
+use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
+use std::io::Cursor;
+
+/// Red L of 64 × 96 pixels in a white picture of 80 × 128: an upright bar and a foot to the right, both 32 pixels
+/// wide.
+fn l_shape() -> DynamicImage {
+    let is_solid =
+        |x: u32, y: u32| (8..72).contains(&x) && (16..112).contains(&y) && (x < 40 || y >= 80);
+    RgbImage::from_fn(80, 128, |x, y| {
+        Rgb(if is_solid(x, y) {
+            [255, 0, 0]
+        } else {
+            [255; 3]
+        })
+    })
+    .into()
+}
+
+/// The L in voxels of 16 pixels.
+const UPRIGHT: [&str; 6] = ["##..", "##..", "##..", "##..", "####", "####"];
+
+fn encoded(format: ImageFormat) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    l_shape().write_to(&mut bytes, format).unwrap();
+    bytes.into_inner()
+}
+
+const FORMATS: [ImageFormat; 4] = [
+    ImageFormat::Jpeg,
+    ImageFormat::WebP,
+    ImageFormat::Gif,
+    ImageFormat::Bmp,
+];
+
+/// Returns the rows of the shape in voxels of 16 pixels, the highest first.
+fn rows(bytes: &[u8], longer: usize) -> Vec<String> {
+    let grid = picture("photo.png", bytes, longer, 0.5).unwrap().grid;
+    let [width, height, _] = grid.size();
+    let sign = |at| if grid.is_solid(at) { '#' } else { '.' };
+    let row = |y| (0..width).map(|x| sign([x, y, 0])).collect();
+    (0..height).rev().map(row).collect()
+}
+
+#[test]
+fn picture_is_decoded_by_content_whatever_its_name() {
+    for format in FORMATS {
+        let found = rows(&encoded(format), 6);
+        assert_eq!(found, UPRIGHT, "{format:?}");
+    }
+}
+
+/// Adds an EXIF segment with an orientation behind the first marker of a JPEG file.
+fn with_orientation(jpeg: &[u8], orientation: u8) -> Vec<u8> {
+    let exif = [
+        &b"\xff\xe1\0\x22Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0"[..],
+        &[orientation, 0, 0, 0, 0, 0, 0],
+    ]
+    .concat();
+    [&jpeg[..2], &exif, &jpeg[2..]].concat()
+}
+
+#[test]
+fn photo_is_turned_as_its_exif_orientation_says() {
+    let jpeg = encoded(ImageFormat::Jpeg);
+    // The values of EXIF: 1 is upright, 3 upside down; the camera of 6 was turned so that the picture must be
+    // turned a quarter to the right, 8 to the left; 2 is mirrored.
+    for (orientation, expected) in [
+        (1, &UPRIGHT[..]),
+        (2, &["..##", "..##", "..##", "..##", "####", "####"]),
+        (3, &["####", "####", "..##", "..##", "..##", "..##"]),
+        (6, &["######", "######", "##....", "##...."]),
+        (8, &["....##", "....##", "######", "######"]),
+    ] {
+        assert_eq!(
+            rows(&with_orientation(&jpeg, orientation), 6),
+            expected,
+            "{orientation}"
+        );
+    }
+}
+
+#[test]
+fn decode_refuses_size_from_header_before_it_allocates() {
+    let mut bmp = encoded(ImageFormat::Bmp);
+    bmp[18..22].copy_from_slice(&20_000u32.to_le_bytes());
+    let mut gif = encoded(ImageFormat::Gif);
+    gif[6..8].copy_from_slice(&u16::MAX.to_le_bytes());
+    for (bytes, expected) in [(bmp, 20_000), (gif, 65_535)] {
+        let error = Picture::decode("big", &bytes).unwrap_err();
+        let Problem::TooLarge { found, limit, .. } = error.problem else {
+            panic!("{error}");
+        };
+        assert_eq!((found, limit), (expected, 8192));
+    }
+}
+
+#[test]
+fn decode_halves_picture_wider_than_4096_pixels() {
+    let wide = RgbImage::from_fn(6000, 20, |x, _| Rgb([if x < 3000 { 0 } else { 255 }; 3]));
+    let mut bytes = Cursor::new(Vec::new());
+    wide.write_to(&mut bytes, ImageFormat::Bmp).unwrap();
+    let picture = Picture::decode("wide", bytes.get_ref()).unwrap();
+    assert_eq!(picture.size(), [3000, 10]);
+    let grid = picture.import(&PictureOptions::default()).unwrap().grid;
+    // The bar of 1500 × 10 pixels is less than half a voxel high, so it is thickened to 2 voxels.
+    assert_eq!(grid.size(), [64, 2, 1]);
+}
+
+fn import(bytes: &[u8]) -> Result<fuwafuwa::VoxelGrid<Dim2>, ImportError> {
+    Ok(picture("test.jpg", bytes, 6, 0.5)?.grid)
+}
+
+#[test]
+fn decode_names_format_of_damaged_picture() {
+    for (format, name) in [
+        (ImageFormat::Gif, "a GIF picture"),
+        (ImageFormat::WebP, "a WebP picture"),
+    ] {
+        let error = import(&encoded(format)[..40]).unwrap_err().to_string();
+        assert!(
+            error.starts_with(&format!("test.jpg: expected {name}, found ")),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn decode_survives_damaged_pictures() {
+    let mut noise = Noise(1);
+    for format in FORMATS {
+        let whole = encoded(format);
+        for round in 0..300 {
+            let broken = noise.damaged(&whole);
+            damage::check(import(&broken));
+            damage::check(import(&whole[..whole.len() * round / 300]));
+        }
+    }
+}
