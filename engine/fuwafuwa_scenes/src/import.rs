@@ -5,12 +5,14 @@
 //! file before memory is allocated for it.
 
 mod colours;
+mod content;
 mod error;
 mod file;
 mod png;
 mod vox;
 
 pub use self::colours::Colours;
+pub use self::content::FileType;
 pub use self::error::{
     FilePosition, ImportError, PositionedProblem, Problem, in_file, too_large, unexpected,
 };
