@@ -4,7 +4,9 @@
 //! 2004]. The first number of a file is the length of the header, which also reveals the byte order.
 
 use crate::placement::{Placement, PlacementForm, Quaternion};
-use fuwafuwa_scenes::import::{FilePosition, PositionedProblem, too_large, unexpected};
+use fuwafuwa_scenes::import::{
+    FilePosition, FileType, PositionedProblem, too_large, unexpected,
+};
 
 /// Maximum number of voxels in a scan: as many as in 512 × 512 × 512, which take half a gigabyte in memory.
 pub const MAX_VOXELS: u64 = 1 << 27;
@@ -180,17 +182,14 @@ struct Bytes<'a> {
 
 impl<'a> Bytes<'a> {
     fn of(bytes: &'a [u8]) -> Result<Self, PositionedProblem> {
-        let expected = "the length of a header, 348 or 540";
         let Some(first) = bytes.first_chunk::<4>() else {
-            let found = format!("{} bytes", bytes.len());
-            return Err(unexpected(FilePosition::Byte(0), expected, found));
+            return Err(no_scan(bytes));
         };
         let lengths = [i32::from_le_bytes(*first), i32::from_be_bytes(*first)];
         let known = [(348, 0), (540, 1)];
         let found = known.iter().find(|(length, _)| lengths.contains(length));
-        let &(length, version) = found.ok_or_else(|| {
-            unexpected(FilePosition::Field("sizeof_hdr", 0), expected, lengths[0])
-        })?;
+        let &(length, version) = found.ok_or_else(|| no_scan(bytes))?;
+        let kind = FileType::of(bytes);
         let Some(bytes) = bytes.get(..length as usize) else {
             let expected = format!("a header of {length} bytes");
             return Err(unexpected(FilePosition::Byte(0), expected, bytes.len()));
@@ -202,12 +201,13 @@ impl<'a> Bytes<'a> {
                 "\"{}\", header and voxels in one file",
                 magic.escape_ascii()
             );
-            let found = format!("\"{}\"", found.escape_ascii());
-            return Err(unexpected(
-                FilePosition::Field("magic", at),
-                expected,
-                found,
-            ));
+            let mut text = format!("\"{}\"", found.escape_ascii());
+            if found.starts_with(b"ni") {
+                text += ", the header of a pair of files (.hdr and .img)";
+            } else if kind == FileType::Analyze {
+                text += ", as in an Analyze header (.hdr)";
+            }
+            return Err(unexpected(FilePosition::Field("magic", at), expected, text));
         }
         Ok(Self {
             bytes,
@@ -236,6 +236,26 @@ impl<'a> Bytes<'a> {
     fn wrong(&self, field: &Field, index: usize, expected: &str) -> PositionedProblem {
         let found = self.number(field, index);
         unexpected(self.place(field, index), expected, found)
+    }
+}
+
+/// Returns the problem of a file that does not begin as a scan. Names the type of its content, if known.
+fn no_scan(bytes: &[u8]) -> PositionedProblem {
+    let kind = FileType::of(bytes);
+    let is_scan = matches!(kind, FileType::Nifti1 | FileType::Nifti2);
+    if !is_scan && kind != FileType::Unknown {
+        return unexpected(FilePosition::File, "a NIfTI scan (.nii or .nii.gz)", kind);
+    }
+    let expected = "the length of a header, 348 or 540";
+    match bytes.first_chunk::<4>() {
+        Some(first) => {
+            let found = i32::from_le_bytes(*first);
+            unexpected(FilePosition::Field("sizeof_hdr", 0), expected, found)
+        }
+        None => {
+            let found = format!("{} bytes", bytes.len());
+            unexpected(FilePosition::Byte(0), expected, found)
+        }
     }
 }
 

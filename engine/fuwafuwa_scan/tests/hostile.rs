@@ -67,7 +67,7 @@ fn error_names_field_expectation_and_value() {
         ),
         (
             with(344, b"ni1\0"),
-            "magic at byte 344: expected \"n+1\\x00\", header and voxels in one file, found \"ni1\\x00\"",
+            "magic at byte 344: expected \"n+1\\x00\", header and voxels in one file, found \"ni1\\x00\", the header of a pair",
         ),
         (
             with(40, &whole(2)),
@@ -183,6 +183,30 @@ fn datatype_decides_over_bitpix() {
     assert_eq!(scan.range(), [0.0, 59.0]);
     let expected = "bitpix: expected 16, the bits of datatype 4, found 8; the datatype was used";
     assert_eq!(scan.notes(), [expected]);
+}
+
+#[test]
+fn other_files_are_named() {
+    let at = |offset: usize, text: &[u8]| [&vec![0; offset], text, &[0; 400]].concat();
+    let lfs = b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12345\n";
+    let mgh = [1_i32, 256, 256, 256, 1, 0].map(i32::to_be_bytes).concat();
+    for (bytes, name) in [
+        (lfs.to_vec(), "a Git LFS pointer, not the file itself"),
+        (b"<!DOCTYPE html><title>404</title>".to_vec(), "a web page"),
+        (b"PK\x03\x04\x14\0".to_vec(), "a ZIP archive"),
+        (at(257, b"ustar"), "an archive"),
+        (mgh, "a FreeSurfer scan"),
+        (b"NRRD0004\ntype: short\n".to_vec(), "an NRRD scan"),
+        (at(128, b"DICM"), "a DICOM file"),
+        (at(0, &348_i32.to_le_bytes()), "an Analyze header"),
+        (Vec::new(), "an empty file"),
+    ] {
+        for bytes in [bytes.clone(), zipped(&bytes)] {
+            let found = error(&bytes).to_string();
+            assert!(found.starts_with("test.nii"), "{found}");
+            assert!(found.contains(name), "{found}");
+        }
+    }
 }
 
 #[test]
