@@ -4,9 +4,7 @@
 //! 2004]. The first number of a file is the length of the header, which also reveals the byte order.
 
 use crate::placement::{Placement, PlacementForm, Quaternion};
-use fuwafuwa_scenes::import::{
-    FilePosition, FileType, PositionedProblem, too_large, unexpected,
-};
+use fuwafuwa_scenes::import::{FilePosition, FileType, PositionedProblem, too_large, unexpected};
 
 /// Maximum number of voxels in a scan: as many as in 512 × 512 × 512, which take half a gigabyte in memory.
 pub const MAX_VOXELS: u64 = 1 << 27;

@@ -3,9 +3,7 @@
 use crate::header::{Header, LONGEST};
 use crate::placement::Placement;
 use crate::stream::Stream;
-use fuwafuwa_scenes::import::{
-    FilePosition, ImportError, PositionedProblem, in_file, unexpected,
-};
+use fuwafuwa_scenes::import::{FilePosition, ImportError, PositionedProblem, in_file, unexpected};
 
 /// Number of voxels read between two calls of `progress`.
 const CHUNK: usize = 1 << 16;
@@ -201,11 +199,7 @@ fn read(
 /// # Errors
 /// The first such integer of 64 bits. Integers of that length are labels, so that a rounded one is another
 /// label.
-fn check_integers(
-    header: &Header,
-    bytes: &[u8],
-    first: usize,
-) -> Result<usize, PositionedProblem> {
+fn check_integers(header: &Header, bytes: &[u8], first: usize) -> Result<usize, PositionedProblem> {
     let mut rounded = 0;
     let width = header.number.bytes();
     for (index, number) in bytes.chunks_exact(width).enumerate() {
@@ -214,7 +208,8 @@ fn check_integers(
         };
         if width == 8 {
             let at = FilePosition::Byte(first + index * width);
-            let expected = "64-bit integers that single precision holds exactly, as all up to 16777216";
+            let expected =
+                "64-bit integers that single precision holds exactly, as all up to 16777216";
             return Err(unexpected(at, expected, found));
         }
         rounded += 1;

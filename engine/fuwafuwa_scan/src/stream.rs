@@ -85,10 +85,7 @@ impl<'a> Stream<'a> {
         }
         let is_zipped = bytes.starts_with(&GZIP);
         let (source, most) = match is_zipped {
-            true => (
-                Source::Zipped(Members::of(bytes)),
-                length * MOST_INFLATED,
-            ),
+            true => (Source::Zipped(Members::of(bytes)), length * MOST_INFLATED),
             false => (Source::Plain(bytes), length),
         };
         let at = 0;

@@ -139,7 +139,9 @@ fn placement_falls_back_to_the_next_valid_form_and_tells_why() {
     let real = |number: f32| number.to_le_bytes().to_vec();
     let zeros = vec![0; 48];
     // Matrix with the second axis parallel to the first.
-    let flat = [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0_f32];
+    let flat = [
+        1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0_f32,
+    ];
     let flat: Vec<u8> = flat.into_iter().flat_map(f32::to_le_bytes).collect();
     for (sform, reason) in [
         ((280, zeros.clone()), "voxels 0.001 to 100 mm apart"),
@@ -241,7 +243,10 @@ fn integers_of_64_bits_are_read_if_single_precision_holds_them() {
     for is_big_endian in [false, true] {
         for (datatype, values) in [
             (1024, [-16_777_216.0, 14_175.0, 1_099_511_627_776.0]),
-            (1280, [0.0, 16_777_216.0, 18_446_744_073_709_551_616.0 / 2.0]),
+            (
+                1280,
+                [0.0, 16_777_216.0, 18_446_744_073_709_551_616.0 / 2.0],
+            ),
         ] {
             let mut file = File::small([3, 1, 1], &values);
             (file.datatype, file.is_big_endian) = (datatype, is_big_endian);
@@ -257,20 +262,28 @@ fn integers_of_64_bits_are_read_if_single_precision_holds_them() {
     let mut file = File::small([3, 1, 1], &[0.0, 16_777_217.0, 33_554_435.0]);
     file.datatype = 8;
     let scan = file.scan();
-    assert!(scan.notes()[0].starts_with("2 of 3 values"), "{:?}", scan.notes());
+    assert!(
+        scan.notes()[0].starts_with("2 of 3 values"),
+        "{:?}",
+        scan.notes()
+    );
 }
 
 #[test]
 fn labels_that_are_lost_are_told() {
     let labels = File::small([2, 2, 2], &[0.0, 1.0, 2.0, 3.0, 7.0, 7.0, 0.0, 4.0]).scan();
-    let told = |scan: &Scan, segmentation: &Segmentation| warnings(&[("it.nii", scan)], segmentation);
+    let told =
+        |scan: &Scan, segmentation: &Segmentation| warnings(&[("it.nii", scan)], segmentation);
     let lost = told(&labels, &Segmentation::Maps);
     assert_eq!(lost.len(), 1, "{lost:?}");
     for word in ["it.nii: ", "below 3.5", "(1, 2, 3)", "--label"] {
         assert!(lost[0].contains(word), "{lost:?}");
     }
     let absent = told(&labels, &Segmentation::labels(&[(7, 1), (17, 2)]));
-    assert!(absent[0].contains("no voxel has the label 17"), "{absent:?}");
+    assert!(
+        absent[0].contains("no voxel has the label 17"),
+        "{absent:?}"
+    );
     assert!(absent[0].contains("1, 2, 3, 4, 7"), "{absent:?}");
     assert!(told(&labels, &Segmentation::labels(&[(7, 1)])).is_empty());
     assert!(told(&labels, &Segmentation::thresholds(&[(1.0..=2.0, 1)])).is_empty());
