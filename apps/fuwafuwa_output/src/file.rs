@@ -3,7 +3,7 @@
 use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, PersistError};
 
 /// Maximum number of characters of a file name that a temporary name begins with. The temporary name must fit
 /// into the 255 bytes of most file systems.
@@ -17,6 +17,23 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut draft = Draft::begin(path)?;
     draft.write_all(bytes)?;
     draft.keep()
+}
+
+/// Checks that the folder of a file exists, so that a long run does not fail at its end.
+///
+/// # Errors
+/// The error of the system; [`ErrorKind::NotADirectory`] if the folder is a file.
+pub fn check_folder(path: &Path) -> io::Result<()> {
+    let folder = folder_of(path);
+    let found = fs::metadata(folder).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => io::Error::new(ErrorKind::NotFound, "the folder does not exist"),
+        _ => error,
+    })?;
+    if !found.is_dir() {
+        let reason = format!("{} is a file, not a folder", folder.display());
+        return Err(io::Error::new(ErrorKind::NotADirectory, reason));
+    }
+    Ok(())
 }
 
 /// Writes several files that belong together. No file is replaced before all of them are on the disk.
@@ -116,7 +133,22 @@ impl Draft {
     ///
     /// # Errors
     /// As [`Draft::complete`], or if the file cannot be renamed.
-    pub fn keep(mut self) -> io::Result<()> {
+    pub fn keep(self) -> io::Result<()> {
+        self.keep_by(|file, path| file.persist(path))
+    }
+
+    /// As [`Draft::keep`], but never replaces an existing file.
+    ///
+    /// # Errors
+    /// As [`Draft::keep`]; [`ErrorKind::AlreadyExists`] if the file exists.
+    pub fn keep_new(self) -> io::Result<()> {
+        self.keep_by(|file, path| file.persist_noclobber(path))
+    }
+
+    fn keep_by(
+        mut self,
+        rename: fn(NamedTempFile, &Path) -> Result<File, PersistError>,
+    ) -> io::Result<()> {
         self.complete()?;
         let (target, _) = self.target.into_parts();
         let Target::Temporary(file) = target else {
@@ -125,7 +157,7 @@ impl Draft {
         if let Some(permissions) = self.permissions {
             file.as_file().set_permissions(permissions)?;
         }
-        file.persist(&self.path).map_err(|failed| failed.error)?;
+        rename(file, &self.path).map_err(|failed| failed.error)?;
         Ok(())
     }
 }
@@ -157,7 +189,6 @@ impl Write for Target {
 }
 
 fn temporary(path: &Path) -> io::Result<NamedTempFile> {
-    let folder = path.parent().filter(|folder| *folder != Path::new(""));
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let mut prefix: String = name.chars().take(MOST_CHARS).collect();
     prefix.push('.');
@@ -169,7 +200,12 @@ fn temporary(path: &Path) -> io::Result<NamedTempFile> {
         // The mode of an ordinary new file. By default, temporary files are readable by their owner only.
         builder.permissions(Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder.unwrap_or(Path::new(".")))
+    builder.tempfile_in(folder_of(path))
+}
+
+fn folder_of(path: &Path) -> &Path {
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    folder.unwrap_or(Path::new("."))
 }
 
 #[cfg(test)]
@@ -197,8 +233,13 @@ mod tests {
         drop(draft);
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(names(folder.path()), ["result.csv"]);
+        let draft = Draft::begin(&path).unwrap();
+        let error = draft.keep_new().unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::AlreadyExists);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
         write(&path, b"new").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert_eq!(names(folder.path()), ["result.csv"]);
     }
 
     #[test]
@@ -206,11 +247,17 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let name = "脳".repeat(85);
         write(&folder.path().join(&name), b"whole").unwrap();
-        assert_eq!(names(folder.path()), [name]);
+        assert_eq!(names(folder.path()), [name.clone()]);
         let error = write(folder.path(), b"").unwrap_err();
         assert_eq!(error.kind(), ErrorKind::IsADirectory);
-        let error = write(&folder.path().join("no/file"), b"").unwrap_err();
+        let missing = folder.path().join("no/file");
+        let error = write(&missing, b"").unwrap_err();
         assert_eq!(error.kind(), ErrorKind::NotFound);
+        let kind_of = |path: &Path| check_folder(path).map_err(|error| error.kind());
+        assert_eq!(kind_of(&missing), Err(ErrorKind::NotFound));
+        let below = folder.path().join(&name).join("file");
+        assert_eq!(kind_of(&below), Err(ErrorKind::NotADirectory));
+        assert_eq!(kind_of(Path::new("file")), Ok(()));
     }
 
     #[test]
