@@ -1,5 +1,6 @@
 //! Output of results: aligned tables, outcomes of checks, a progress bar.
 
+use anyhow::Result;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::ops::RangeInclusive;
@@ -61,6 +62,12 @@ impl Outcome {
             pass: None,
         }
     }
+}
+
+/// Prints a value as JSON.
+pub fn print_json(value: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(value)? + "\n";
+    Ok(output::print(&text)?)
 }
 
 /// Progress bar on standard error. It appears only after [`PATIENCE`].
