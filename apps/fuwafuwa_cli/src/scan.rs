@@ -361,7 +361,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("cube.nii");
         std::fs::write(&file, cube()).unwrap();
-        // Names that need quoting in TOML, and names that end in dots or spaces.
+        // Names with characters that TOML escapes, or that Rust would escape in another way.
         let names = [
             "cube",
             "脳\u{3000}断面",

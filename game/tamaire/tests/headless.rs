@@ -428,7 +428,7 @@ fn file_that_cannot_be_opened_is_refused_with_its_reason() {
             assert_eq!(said.contains("no level or file"), is_missing, "{said}");
         }
     }
-    // A file whose name is not UTF-8 is opened like any other.
+    // A file with a name outside of UTF-8 is opened like any other.
     let odd = OsStr::from_bytes(b"\xff.toml");
     fs::write(folder.path().join(odd), small_level(0.0)).unwrap();
     let bot = ["--headless", "--bot", "idle"].map(OsStr::new);

@@ -91,7 +91,7 @@ pub fn read(path: &Path) -> Result<(Connection, Option<TempDir>), Error> {
     let (connection, copy) = match (size(&log), memory.exists()) {
         // A program that has the file open, or was killed, leaves both files beside it.
         (_, true) => (connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?, None),
-        // Nobody has the file open, and no log belongs to it.
+        // No program has the file open, and no log belongs to it.
         (0, false) => (connect_immutable(path)?, None),
         // Reading a log requires the shared memory, which SQLite would create beside the file.
         (_, false) => {
@@ -116,7 +116,7 @@ pub fn read(path: &Path) -> Result<(Connection, Option<TempDir>), Error> {
     }
 }
 
-/// Opens a file that nobody writes, also on a read-only medium: without locks and shared memory.
+/// Opens a file to which no program writes, also on a read-only medium: without locks and shared memory.
 fn connect_immutable(path: &Path) -> Result<Connection, Error> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI;
     connect(&immutable_uri(path), flags)
