@@ -363,7 +363,7 @@ fn links_are_played_without_a_window() {
     );
     assert_eq!(
         (&told["level"], &told["won"]),
-        (&"mine".into(), &true.into())
+        (&"mine.toml".into(), &true.into())
     );
     let told = json_of(
         folder.path(),

@@ -28,7 +28,7 @@ pub fn fragments(text: &str) -> Vec<String> {
         // Signs of quoted mails at the beginnings of lines.
         let word = word.trim_start_matches(['>', '|']);
         let end = word.find(|letter| !is_of_fragment(letter));
-        fragment.extend(word[..end.unwrap_or(word.len())].chars());
+        fragment.push_str(&word[..end.unwrap_or(word.len())]);
         if end.is_some() || fragment.ends_with(END) {
             fragments.push(fragment.clone());
         }
