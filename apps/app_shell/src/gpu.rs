@@ -2,6 +2,7 @@
 //! resources.
 
 use eframe::egui_wgpu::{RenderState, WgpuSetup};
+use std::io::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -44,7 +45,8 @@ impl GpuWatch {
         let failed = is_lost.clone();
         device.on_uncaptured_error(Arc::new(move |error| {
             if !failed.swap(true, Ordering::Relaxed) {
-                eprintln!("{program}: the GPU failed: {error}");
+                // Standard error may be closed.
+                let _ = writeln!(std::io::stderr(), "{program}: the GPU failed: {error}");
             }
         }));
         let probe = wgpu::BufferDescriptor {

@@ -3,7 +3,7 @@
 
 mod rapier;
 
-use crate::report::{self, Progress, table};
+use crate::report::{self, Progress, print_json, table};
 use anyhow::Result;
 use clap::ValueEnum;
 use fuwafuwa::{
@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.into());
     let measures = threads.build()?.install(|| measures(arguments))?;
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&measures)?);
+        print_json(&measures)?;
         return Ok(ExitCode::SUCCESS);
     }
     let head = ["", "median", "best", "worst", ""]
@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
             measure.unit.into(),
         ]);
     }
-    print!("{}", table(&rows, &[false, true, true, true, false]));
+    output::print(&table(&rows, &[false, true, true, true, false]))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -400,7 +400,7 @@ fn measure(what: String, unit: &'static str, mut values: Vec<f64>, scale: f64) -
     Measure {
         what,
         unit,
-        median: at(values.len() / 2),
+        median: output::quantile(&values, 0.5).map_or(f64::NAN, |value| value * scale),
         best: at(0),
         worst: at(values.len().saturating_sub(1)),
     }

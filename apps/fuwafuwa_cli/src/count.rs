@@ -30,9 +30,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let counts = count(arguments.dim, arguments.shape, &arguments.n)?;
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&counts)?);
+        report::print_json(&counts)?;
     } else {
-        print!("{}", table(&counts));
+        output::print(&table(&counts))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -44,8 +44,8 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    run(Arguments::parse()).unwrap_or_else(|error| {
-        eprintln!("error: {error:#}");
+    run(output::parse()).unwrap_or_else(|error| {
+        output::warn(format_args!("error: {error:#}"));
         ExitCode::from(2)
     })
 }

@@ -1,5 +1,6 @@
 //! Replays a recording and compares the hashes.
 
+use crate::report::print_json;
 use anyhow::{Context, Result};
 use fuwafuwa::{Dim2, Dim3};
 use fuwafuwa_scenes::disk::read_text;
@@ -27,17 +28,17 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         _ => recording.replay::<Dim3>(|_| {})?,
     };
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&comparison)?);
+        print_json(&comparison)?;
     } else {
-        match comparison.differs_at {
-            None => println!(
-                "{name}: {} ticks, identical to the recording",
+        output::print(&match comparison.differs_at {
+            None => format!(
+                "{name}: {} ticks, identical to the recording\n",
                 comparison.ticks
             ),
-            Some(tick) => println!(
-                "{name}: differs from the recording at tick {tick} or in the second before it"
+            Some(tick) => format!(
+                "{name}: differs from the recording at tick {tick} or in the second before it\n"
             ),
-        }
+        })?;
     }
     Ok(ExitCode::from(u8::from(comparison.differs_at.is_some())))
 }

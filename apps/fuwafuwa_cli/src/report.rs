@@ -1,5 +1,6 @@
 //! Output of results: aligned tables, outcomes of checks, a progress bar.
 
+use anyhow::Result;
 use fuwafuwa_scenes::Scene;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
@@ -12,7 +13,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Prints notes on the pictures and models of a scene to stderr.
 pub fn notes(scene: &Scene) {
     for note in scene.notes() {
-        eprintln!("note: {note}");
+        output::warn(format_args!("note: {note}"));
     }
 }
 
@@ -69,6 +70,12 @@ impl Outcome {
             pass: None,
         }
     }
+}
+
+/// Prints a value as JSON.
+pub fn print_json(value: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(value)? + "\n";
+    Ok(output::print(&text)?)
 }
 
 /// Progress bar on standard error. It appears only after [`PATIENCE`].

@@ -1,6 +1,6 @@
 //! Runs a scene, films it, and records the inputs of its hands.
 
-use crate::report::{self, Progress};
+use crate::report::{self, Progress, print_json};
 use anyhow::{Context, Result};
 use fuwafuwa::{Dim, Dim2, Dim3, Event, Vec3, World};
 use fuwafuwa_painter::solid::{Camera, Scene3d};
@@ -123,7 +123,16 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         Some(path) => film_is_gif(path)?,
         None => false,
     };
-    anyhow::ensure!(ticks > 0, "--frames: expected at least 1, found 0");
+    anyhow::ensure!(
+        ticks > 0 || arguments.frames.is_none(),
+        "--frames: expected at least 1, found 0"
+    );
+    anyhow::ensure!(
+        ticks > 0,
+        "{}: seconds: expected a tick (1/60 s) or more, found {}",
+        arguments.scene,
+        scene.seconds
+    );
     let most = fuwafuwa_scenes::recording::MAX_TICKS as u64;
     anyhow::ensure!(
         arguments.record.is_none() || ticks <= most,
@@ -202,10 +211,10 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         hash: format!("{:016x}", world.hash()),
     };
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&summary)?);
+        print_json(&summary)?;
     } else {
-        println!(
-            "{}: ticks: {}, substeps: {}, releases: {}, pieces: {} (crumbs: {}, asleep: {}), hash {}",
+        output::print(&format!(
+            "{}: ticks: {}, substeps: {}, releases: {}, pieces: {} (crumbs: {}, asleep: {}), hash {}\n",
             summary.scene,
             summary.ticks,
             summary.substeps,
@@ -214,7 +223,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
             summary.crumbs,
             summary.asleep,
             summary.hash
-        );
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -232,18 +241,13 @@ fn film_is_gif(path: &Path) -> Result<bool> {
 
 /// Checks that the folder of a file exists, so that a long run does not fail at its end.
 pub fn check_folder(path: &Path) -> Result<()> {
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    let exists = folder.is_none_or(Path::is_dir);
-    anyhow::ensure!(exists, "{}: no such folder", path.display());
-    Ok(())
+    output::check_folder(path).with_context(|| path.display().to_string())
 }
 
 /// Writes a file and prints its name.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    std::fs::write(path, bytes).with_context(|| path.display().to_string())?;
-    eprintln!("{}", path.display());
+    output::write(path, bytes).with_context(|| path.display().to_string())?;
+    output::warn(path.display());
     Ok(())
 }
 
@@ -279,10 +283,10 @@ mod tests {
     fn invalid_outputs_are_rejected_before_the_run() {
         let refused = |frames, film: &str| {
             let error = run(&filmed(frames, film.into())).unwrap_err();
-            error.to_string()
+            format!("{error:#}")
         };
         // Passes the largest number of ticks: if the run began before the check, the test would never end.
-        assert!(refused(u64::MAX, "nowhere/film.gif").contains("no such folder"));
+        assert!(refused(u64::MAX, "nowhere/film.gif").contains("the folder does not exist"));
         assert!(refused(u64::MAX, "film.mp4").contains(".png or .gif"));
         assert!(refused(0, "film.gif").contains("at least 1"));
     }

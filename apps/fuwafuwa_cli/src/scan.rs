@@ -4,7 +4,7 @@ use crate::report::{self, Progress};
 use crate::run::{check_folder, write};
 use anyhow::{Context, Result};
 use fuwafuwa_scan::{
-    Label, MAX_FILE_BYTES, Options, Organ, PlacementSource, Scan, Segmentation, Threshold,
+    Label, MAX_FILE_BYTES, Options, Organ, PlacementSource, Scan, Segmentation, Threshold, warnings,
 };
 use fuwafuwa_scenes::disk::read_bytes;
 use fuwafuwa_scenes::import::Model;
@@ -75,6 +75,8 @@ struct ScanInfo {
     placed_by: &'static str,
     lowest: f32,
     highest: f32,
+    /// What was replaced or ignored, as sentences.
+    notes: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -108,17 +110,18 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let organ = Organ::of(&all, &segmentation, &options, follow(&progress))?;
     drop(progress);
     let summary = summary(arguments, &scans, &organ);
-    if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&summary)?);
-    } else {
-        print!("{}", text(&summary));
-    }
-    let is_unplaced = |scan: &Scan| scan.placement().source() == PlacementSource::Spacing;
-    if scans.iter().any(is_unplaced) {
-        eprintln!("warning: at least one scan has no orientation: left and right may be swapped");
+    let names = summary.scans.iter().map(|scan| scan.file.as_str());
+    let named: Vec<_> = names.zip(&scans).collect();
+    for warning in warnings(&named, &segmentation) {
+        output::warn(format_args!("warning: {warning}"));
     }
     if let Some(out) = out {
         write_files(out, &organ, &summary)?;
+    }
+    if arguments.json {
+        report::print_json(&summary)?;
+    } else {
+        output::print(&text(&summary))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -152,6 +155,7 @@ fn summary(arguments: &Arguments, scans: &[Scan], organ: &Organ) -> Summary {
             },
             lowest: scan.range()[0],
             highest: scan.range()[1],
+            notes: scan.notes().to_vec(),
         });
     let shares = (1..=u8::MAX).map(|material| Share {
         material,
@@ -215,54 +219,101 @@ fn is_scene(out: &Path) -> Result<bool> {
 
 fn write_files(out: &Path, organ: &Organ, summary: &Summary) -> Result<()> {
     let model = out.with_extension("vox");
-    let name = model.file_name().unwrap_or_default().to_string_lossy();
+    let name = model.file_name().unwrap_or_default();
+    let Some(name) = name.to_str() else {
+        anyhow::bail!("{}: expected a name in UTF-8", out.display());
+    };
     let colours: Vec<_> = COLOURS.into_iter().cycle().take(255).collect();
-    let made = Model::of(&name, &organ.grid, &colours)?;
-    write(&model, &made.bytes())?;
-    if is_scene(out)? {
-        write(out, scene(&name, made.size(), summary).as_bytes())?;
+    let made = Model::of(name, &organ.grid, &colours)?;
+    let bytes = made.bytes();
+    if !is_scene(out)? {
+        return write(&model, &bytes);
+    }
+    let scene = scene(name, made.size(), summary)?;
+    output::write_together(&[(&model, &bytes), (out, scene.as_bytes())])
+        .map_err(|(path, error)| anyhow::anyhow!("{}: {error}", path.display()))?;
+    for path in [&model, out] {
+        output::warn(path.display());
     }
     Ok(())
 }
 
+/// Scene in which an organ falls onto a table. The fields are those of a scene file.
+#[derive(Serialize)]
+struct OrganScene<'a> {
+    dim: u8,
+    seconds: f32,
+    view: [[f32; 3]; 2],
+    material: Vec<OrganMaterial>,
+    body: [OrganBody<'a>; 1],
+    obstacle: [OrganTable; 1],
+}
+
+#[derive(Clone, Serialize)]
+struct OrganMaterial {
+    young: f32,
+    poisson: f32,
+    density: f32,
+    strength: f32,
+    toughness: f32,
+}
+
+#[derive(Serialize)]
+struct OrganBody<'a> {
+    file: &'a str,
+    width: f32,
+    at: [f32; 3],
+}
+
+#[derive(Serialize)]
+struct OrganTable {
+    friction: f32,
+    half_space: HalfSpace,
+}
+
+#[derive(Serialize)]
+struct HalfSpace {
+    normal: [f32; 3],
+    point: [f32; 3],
+}
+
 /// Returns the TOML text of a scene in which the organ, in real size, falls onto a table 1 cm below.
-fn scene(model: &str, size: [usize; 3], summary: &Summary) -> String {
+fn scene(model: &str, size: [usize; 3], summary: &Summary) -> Result<String> {
     let last = summary.materials.last().map_or(1, |share| share.material);
-    let [right, up, back] = size.map(|k| k as f32 * summary.voxel / 1000.0);
-    let longest = right.max(up).max(back);
+    let sides = size.map(|k| k as f32 * summary.voxel / 1000.0);
+    let longest = sides.into_iter().fold(0.0, f32::max);
     let around = 0.6 * longest;
-    let mut text = format!(
+    let material = OrganMaterial {
+        young: 20_000.0,
+        poisson: 0.4,
+        density: 1050.0,
+        strength: 50_000.0,
+        toughness: 5000.0,
+    };
+    let scene = OrganScene {
+        dim: 3,
+        seconds: 2.0,
+        view: [-around, around].map(|far| sides.map(|side| 0.5 * side + far)),
+        material: vec![material; last.into()],
+        body: [OrganBody {
+            file: model,
+            width: longest,
+            at: [0.0, 0.01, 0.0],
+        }],
+        obstacle: [OrganTable {
+            friction: 0.5,
+            half_space: HalfSpace {
+                normal: [0.0, 1.0, 0.0],
+                point: [0.0; 3],
+            },
+        }],
+    };
+    Ok(format!(
         "# Made by `fuwafuwa scan`. This is not a medical device.\n\
-         dim = 3\n\
-         seconds = 2.0\n\
-         view = [[{:?}, {:?}, {:?}], [{:?}, {:?}, {:?}]]\n\
-         \n# All materials are as soft and dense as organs, hard to tear, and equal until edited.\n",
-        0.5 * right - around,
-        0.5 * up - around,
-        0.5 * back - around,
-        0.5 * right + around,
-        0.5 * up + around,
-        0.5 * back + around,
-    );
-    for material in 1..=last {
-        text += &format!(
-            "[[material]] # number {material}\n\
-             young = 20000.0\n\
-             poisson = 0.4\n\
-             density = 1050.0\n\
-             strength = 50000.0\n\
-             toughness = 5000.0\n\n"
-        );
-    }
-    text + &format!(
-        "[[body]]\n\
-         file = {model:?}\n\
-         width = {longest:?}\n\
-         at = [0.0, 0.01, 0.0]\n\
-         \n[[obstacle]]\n\
-         half_space = {{ normal = [0.0, 1.0, 0.0], point = [0.0, 0.0, 0.0] }}\n\
-         friction = 0.5\n"
-    )
+         # The materials are numbered from 1. All are as soft and dense as organs, hard to tear, and equal until edited.\n\
+         \n{}",
+        toml::to_string(&scene)?
+    ))
 }
 
 #[cfg(test)]
@@ -294,28 +345,57 @@ mod tests {
         bytes
     }
 
-    #[test]
-    fn scan_converts_to_a_scene_that_builds() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("cube.nii");
-        std::fs::write(&file, cube()).unwrap();
-        let out = folder.path().join("cube.toml");
-        let arguments = Arguments {
+    fn scan_to(file: PathBuf, out: PathBuf) -> Result<ExitCode> {
+        run(&Arguments {
             files: vec![file],
             resolution: 11,
             thresholds: Vec::new(),
             labels: vec!["1=2".parse().unwrap()],
             fill: false,
-            out: Some(out.clone()),
+            out: Some(out),
             json: false,
-        };
-        run(&arguments).unwrap();
-        let scene = open_scene(&out.display().to_string(), &[]).unwrap();
-        let world = scene.build::<Dim3>().unwrap();
-        let (_, body) = world.soft_bodies().next().expect("the scene has a body");
-        let grid = body.grid();
-        assert_eq!(grid.solid_count(), 729);
-        assert_eq!(grid.material([5; 3]), 2);
-        assert!((grid.voxel_size() - 0.002).abs() < 1e-6);
+        })
+    }
+
+    #[test]
+    fn scan_converts_to_a_scene_that_builds() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("cube.nii");
+        std::fs::write(&file, cube()).unwrap();
+        // Names with characters that TOML escapes, or that Rust would escape in another way.
+        let names = [
+            "cube",
+            "脳\u{3000}断面",
+            "a \"b\" 'c'",
+            "back\\slash",
+            "tab\tand\nline",
+            "\u{7f}",
+            "#1 [x]",
+        ];
+        for name in names.into_iter().filter(|_| !cfg!(windows)).chain(["cube"]) {
+            let out = folder.path().join(format!("{name}.toml"));
+            scan_to(file.clone(), out.clone()).unwrap();
+            let scene = open_scene(&out.display().to_string(), &[]).unwrap();
+            let world = scene.build::<Dim3>().unwrap();
+            let (_, body) = world.soft_bodies().next().expect("the scene has a body");
+            let grid = body.grid();
+            assert_eq!(grid.solid_count(), 729, "{name}");
+            assert_eq!(grid.material([5; 3]), 2);
+            assert!((grid.voxel_size() - 0.002).abs() < 1e-6);
+        }
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn name_that_is_not_utf8_is_refused_before_anything_is_written() {
+        use std::ffi::OsStr;
+        use std::os::unix::ffi::OsStrExt;
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("cube.nii");
+        std::fs::write(&file, cube()).unwrap();
+        let out = folder.path().join(OsStr::from_bytes(b"\xff.toml"));
+        let error = scan_to(file, out).unwrap_err().to_string();
+        assert!(error.contains("expected a name in UTF-8"), "{error}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }

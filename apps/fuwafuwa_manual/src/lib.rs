@@ -27,7 +27,10 @@ pub fn run(command: Command, options: &Options) -> ExitCode {
     match write(command, &options.folder) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("{name}: {}: {error}", options.folder.display());
+            output::warn(format_args!(
+                "{name}: {}: {error}",
+                options.folder.display()
+            ));
             ExitCode::from(NOT_WRITTEN)
         }
     }
@@ -38,14 +41,29 @@ pub fn run(command: Command, options: &Options) -> ExitCode {
 /// # Errors
 /// If a file cannot be written.
 pub fn write(mut command: Command, folder: &Path) -> io::Result<()> {
-    let (pages, completions) = (folder.join("man"), folder.join("completions"));
-    fs::create_dir_all(&pages)?;
-    fs::create_dir_all(&completions)?;
+    let drafts = tempfile::tempdir()?;
+    let [pages, completions] = ["man", "completions"].map(|name| drafts.path().join(name));
+    fs::create_dir(&pages)?;
+    fs::create_dir(&completions)?;
     let name = command.get_name().to_string();
     // Without this, each subcommand would get another page for `help SUBCOMMAND`, with the same text.
-    clap_mangen::generate_to(command.clone().disable_help_subcommand(true), pages)?;
+    clap_mangen::generate_to(command.clone().disable_help_subcommand(true), &pages)?;
     for shell in [Shell::Bash, Shell::Fish, Shell::Zsh, Shell::PowerShell] {
         generate_to(shell, &mut command, &name, &completions)?;
+    }
+    for drafts in [pages, completions] {
+        let kind = drafts.file_name().unwrap_or_default();
+        copy_files(&drafts, &folder.join(kind))?;
+    }
+    Ok(())
+}
+
+/// Copies the files of a folder, each as a whole.
+fn copy_files(from: &Path, to: &Path) -> io::Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        output::write(&to.join(entry.file_name()), &fs::read(entry.path())?)?;
     }
     Ok(())
 }

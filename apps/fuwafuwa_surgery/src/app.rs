@@ -123,13 +123,13 @@ impl App {
         };
         self.loading = None;
         match result {
-            Ok((loaded, warning)) => {
+            Ok((loaded, warnings)) => {
                 self.begin(match loaded {
                     Loaded::Procedure(procedure) => Session::new(*procedure),
                     Loaded::Playback(playback) => Session::again(*playback),
                 });
-                if let Some(warning) = warning {
-                    self.say(warning.into());
+                if !warnings.is_empty() {
+                    self.say(warnings.join("\n"));
                 }
             }
             Err(error) => {

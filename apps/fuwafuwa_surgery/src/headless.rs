@@ -10,7 +10,6 @@ use crate::trainee::Trainee;
 use cpu_time::ThreadTime;
 use fuwafuwa::DEFAULT_TICK;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -20,8 +19,8 @@ pub struct Options {
     /// Seed of the automatic trainee
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     seed: u64,
-    /// Maximum duration of the procedure
-    #[arg(long, default_value_t = 60.0, value_name = "SECONDS")]
+    /// Maximum duration of the procedure, 0 to 3600
+    #[arg(long, default_value_t = 60.0, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     seconds: f32,
     /// Write the recording to FILE
     #[arg(long, value_name = "FILE")]
@@ -49,11 +48,11 @@ pub fn operate(wanted: &LoadRequest, options: &Options) -> Result<(), String> {
     bar.set_message("organ");
     let began = Instant::now();
     let mut progress = |done: f32| bar.set_position((1000.0 * done) as u64);
-    let (loaded, warning) = load(wanted, &mut progress).map_err(|error| error.to_string())?;
+    let (loaded, warnings) = load(wanted, &mut progress).map_err(|error| error.to_string())?;
     let laid = began.elapsed().as_secs_f32();
     bar.set_message("procedure");
-    if let Some(warning) = warning {
-        bar.println(format!("warning: {warning}"));
+    for warning in warnings {
+        bar.suspend(|| output::warn(format_args!("warning: {warning}")));
     }
     let mut costs = Vec::new();
     let procedure = match loaded {
@@ -66,8 +65,6 @@ pub fn operate(wanted: &LoadRequest, options: &Options) -> Result<(), String> {
     if options.bench {
         text += &format!("\n{}", told(&procedure, laid, costs));
     }
-    // Ignores errors, because standard output may be closed.
-    let _ = writeln!(std::io::stdout(), "{text}");
     if let Some(path) = &options.save {
         write(path, &Recording::of(&procedure).bytes())?;
     }
@@ -78,7 +75,7 @@ pub fn operate(wanted: &LoadRequest, options: &Options) -> Result<(), String> {
         let plots = report::svg(procedure.samples()).map_err(|error| error.to_string())?;
         write(path, plots.as_bytes())?;
     }
-    Ok(())
+    output::print(&(text + "\n")).map_err(|error| error.to_string())
 }
 
 fn by_itself(
@@ -88,7 +85,7 @@ fn by_itself(
     costs: &mut Vec<f64>,
 ) -> Result<Procedure, String> {
     let trainee = Trainee::new(&procedure, options.seed);
-    let most = (options.seconds.clamp(0.0, 3600.0) / DEFAULT_TICK) as usize;
+    let most = (options.seconds / DEFAULT_TICK) as usize;
     let ticks = trainee.ticks().min(most);
     for tick in 0..ticks {
         bar.set_position((1000 * tick / ticks) as u64);
@@ -113,18 +110,23 @@ fn again(
         playback.step().map_err(|error| error.to_string())?;
         costs.push(began.elapsed().as_secs_f64());
     }
-    bar.println("the replay is identical to the recording, bit for bit");
+    bar.suspend(|| output::warn("the replay is identical to the recording, bit for bit"));
     Ok(playback.into_procedure())
+}
+
+/// Parses the duration of a procedure [s].
+fn seconds(text: &str) -> Result<f32, String> {
+    let seconds: Option<f32> = text.parse().ok();
+    seconds
+        .filter(|seconds| (0.0..=3600.0).contains(seconds))
+        .ok_or_else(|| "expected 0 to 3600 seconds".into())
 }
 
 /// Summarizes the loading time `laid`, and the processor times of all ticks except the first.
 fn told(procedure: &Procedure, laid: f32, mut costs: Vec<f64>) -> String {
     costs = costs.split_off(costs.len().min(1));
     costs.sort_by(f64::total_cmp);
-    let at = |share: f64| {
-        let last = costs.len().saturating_sub(1) as f64;
-        1e3 * costs.get((share * last) as usize).copied().unwrap_or(0.0)
-    };
+    let at = |share| 1e3 * output::quantile(&costs, share).unwrap_or(0.0);
     let late = costs
         .iter()
         .filter(|cost| **cost > f64::from(DEFAULT_TICK))

@@ -4,9 +4,7 @@ use crate::case::{Case, CaseError};
 use crate::phantom;
 use crate::procedure::Procedure;
 use crate::record::{MOST_BYTES, Playback, RecordError, Recording};
-use fuwafuwa_scan::{
-    MAX_FILE_BYTES, Options, Organ, OrganError, PlacementSource, Scan, Segmentation,
-};
+use fuwafuwa_scan::{MAX_FILE_BYTES, Options, Organ, OrganError, Scan, Segmentation, warnings};
 use fuwafuwa_scenes::disk::read_bytes;
 use fuwafuwa_scenes::import::ImportError;
 use std::path::PathBuf;
@@ -49,8 +47,8 @@ pub enum Loaded {
     Playback(Box<Playback>),
 }
 
-/// Warning about a loaded organ, as text for the user.
-pub type Warning = &'static str;
+/// Warnings about a loaded organ, as sentences for the user.
+pub type Warnings = Vec<String>;
 
 /// Reason why loading failed.
 #[derive(Debug, thiserror::Error)]
@@ -85,19 +83,19 @@ pub enum LoadError {
 pub fn load(
     wanted: &LoadRequest,
     progress: &mut dyn FnMut(f32),
-) -> Result<(Loaded, Option<Warning>), LoadError> {
+) -> Result<(Loaded, Warnings), LoadError> {
     let begin = |case: Case| -> Result<Loaded, LoadError> {
         Ok(Loaded::Procedure(Box::new(Procedure::new(Arc::new(case))?)))
     };
     match wanted {
-        LoadRequest::Phantom(resolution) => Ok((begin(phantom::case(*resolution)?)?, None)),
+        LoadRequest::Phantom(resolution) => Ok((begin(phantom::case(*resolution)?)?, Vec::new())),
         LoadRequest::Recording(file) => {
             let name = file.display().to_string();
             let bytes = read(file, MOST_BYTES as u64)?;
             let recording = Recording::read(&bytes);
             let playback = recording.and_then(|recording| Playback::new(Arc::new(recording)));
             let playback = playback.map_err(|error| LoadError::Record(name, error))?;
-            Ok((Loaded::Playback(Box::new(playback)), None))
+            Ok((Loaded::Playback(Box::new(playback)), Vec::new()))
         }
         LoadRequest::Scans {
             files,
@@ -117,12 +115,15 @@ pub fn load(
             let organ = Organ::of(&all, segmentation, options, |done| {
                 progress(READ + (MADE - READ) * done);
             })?;
-            let is_unplaced = |scan: &Scan| scan.placement().source() == PlacementSource::Spacing;
-            let warning = "At least one scan has no orientation: left and right may be swapped.";
-            let warning = scans.iter().any(is_unplaced).then_some(warning);
+            let names: Vec<_> = files
+                .iter()
+                .map(|file| file.display().to_string())
+                .collect();
+            let named: Vec<_> = names.iter().map(String::as_str).zip(&scans).collect();
+            let warnings = warnings(&named, segmentation);
             let procedure = begin(Case::of(&name_of(files), &organ))?;
             progress(1.0);
-            Ok((procedure, warning))
+            Ok((procedure, warnings))
         }
     }
 }
@@ -145,7 +146,7 @@ fn name_of(files: &[PathBuf]) -> String {
 pub struct Loading {
     /// Progress from 0 to 1, as the bits of an `f32`.
     done: Arc<AtomicU32>,
-    told: Receiver<Result<(Loaded, Option<Warning>), LoadError>>,
+    told: Receiver<Result<(Loaded, Warnings), LoadError>>,
 }
 
 impl Loading {
@@ -173,7 +174,7 @@ impl Loading {
     }
 
     /// Returns the result once loading has finished.
-    pub fn take(&self) -> Option<Result<(Loaded, Option<Warning>), LoadError>> {
+    pub fn take(&self) -> Option<Result<(Loaded, Warnings), LoadError>> {
         match self.told.try_recv() {
             Ok(result) => Some(result),
             Err(TryRecvError::Empty) => None,

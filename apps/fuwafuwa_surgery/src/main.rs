@@ -54,12 +54,12 @@ Exit status: 0 success; 1 a replay differs from its recording, a file could not 
 2 invalid arguments";
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments: Arguments = output::parse();
     if !RESOLUTIONS.contains(&arguments.resolution) {
-        eprintln!(
+        output::warn(format_args!(
             "fuwafuwa_surgery: resolution: expected {RESOLUTIONS:?} voxels, found {}",
             arguments.resolution
-        );
+        ));
         return ExitCode::from(2);
     }
     let mut setup = Setup {
@@ -76,7 +76,7 @@ fn main() -> ExitCode {
     }
     if arguments.headless || !has_display() {
         if !arguments.headless {
-            eprintln!("fuwafuwa_surgery: no display found; running without a window");
+            output::warn("fuwafuwa_surgery: no display found; running without a window");
         }
         return match headless::operate(&setup.wanted, &arguments.alone) {
             Ok(()) => ExitCode::SUCCESS,
@@ -98,7 +98,7 @@ fn main() -> ExitCode {
 }
 
 fn failed(reason: &str) -> ExitCode {
-    eprintln!("fuwafuwa_surgery: {reason}");
+    output::warn(format_args!("fuwafuwa_surgery: {reason}"));
     ExitCode::FAILURE
 }
 

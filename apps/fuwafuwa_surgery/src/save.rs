@@ -4,7 +4,7 @@ use crate::loading::ENDING;
 use crate::procedure::Procedure;
 use crate::record::Recording;
 use crate::report;
-use std::fs::OpenOptions;
+use output::Draft;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -34,15 +34,16 @@ pub fn save(folder: &Path, procedure: &Procedure) -> Result<PathBuf, String> {
     Ok(path)
 }
 
-/// Writes a file and overwrites an existing one.
+/// Writes a file as a whole and replaces an existing one.
 ///
 /// # Errors
 /// A message that names the file and the problem.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    std::fs::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()))
+    output::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 fn write_new(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let file = OpenOptions::new().write(true).create_new(true).open(path);
-    file?.write_all(bytes)
+    let mut draft = Draft::begin(path)?;
+    draft.write_all(bytes)?;
+    draft.keep_new()
 }

@@ -3,8 +3,8 @@
 //! The header has 348 bytes in NIfTI-1 and 540 in NIfTI-2, with the same fields at different offsets [Cox
 //! 2004]. The first number of a file is the length of the header, which also reveals the byte order.
 
-use crate::placement::{Placement, PlacementForms, Quaternion};
-use fuwafuwa_scenes::import::{FilePosition, PositionedProblem, too_large, unexpected};
+use crate::placement::{Placement, PlacementForm, Quaternion};
+use fuwafuwa_scenes::import::{FilePosition, FileType, PositionedProblem, too_large, unexpected};
 
 /// Maximum number of voxels in a scan: as many as in 512 × 512 × 512, which take half a gigabyte in memory.
 pub const MAX_VOXELS: u64 = 1 << 27;
@@ -14,6 +14,10 @@ pub const LONGEST: usize = 540;
 
 /// Maximum offset of the first voxel [bytes]. Header extensions lie between the header and the first voxel.
 const MAX_OFFSET: f64 = (1 << 26) as f64;
+
+/// Length of the field between the header and the first voxel that tells whether header extensions follow
+/// [bytes].
+const EXTENDER: usize = 4;
 
 /// Number format of a field or a voxel.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -25,6 +29,7 @@ pub enum NumberFormat {
     I32,
     U32,
     I64,
+    U64,
     F32,
     F64,
 }
@@ -77,21 +82,25 @@ pub struct Header {
     /// Slope and intercept of the values: value = slope · stored number + intercept.
     pub scale: [f64; 2],
     pub placement: Placement,
+    /// Fields that were replaced or ignored, as sentences for the user.
+    pub notes: Vec<String>,
 }
 
 impl Header {
     /// Reads the header from `bytes`, the first [`LONGEST`] bytes of a file, or all bytes of a shorter file.
     pub fn read(bytes: &[u8]) -> Result<Self, PositionedProblem> {
         let bytes = Bytes::of(bytes)?;
+        let mut notes = Vec::new();
         let size = size(&bytes)?;
-        let number = number(&bytes)?;
+        let number = number(&bytes, &mut notes)?;
         Ok(Self {
             size,
             number,
             is_big_endian: bytes.is_big_endian,
             offset: offset(&bytes)?,
             scale: scale(&bytes)?,
-            placement: placement(&bytes)?,
+            placement: placement(&bytes, &mut notes)?,
+            notes,
         })
     }
 
@@ -112,18 +121,13 @@ impl NumberFormat {
             Self::U8 | Self::I8 => 1,
             Self::I16 | Self::U16 => 2,
             Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::F64 => 8,
+            Self::I64 | Self::U64 | Self::F64 => 8,
         }
     }
 
     /// Decodes a number. 64-bit integers are rounded to 53 bits; all limits are far below 2⁵³.
     pub fn value(self, bytes: &[u8], is_big_endian: bool) -> f64 {
-        let mut word = [0; 8];
-        let used = &mut word[..self.bytes()];
-        used.copy_from_slice(bytes);
-        if is_big_endian {
-            used.reverse();
-        }
+        let word = self.word(bytes, is_big_endian);
         let [a, b, c, d, ..] = word;
         match self {
             Self::U8 => f64::from(a),
@@ -134,8 +138,35 @@ impl NumberFormat {
             Self::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
             Self::F32 => f64::from(f32::from_le_bytes([a, b, c, d])),
             Self::I64 => i64::from_le_bytes(word) as f64,
+            Self::U64 => u64::from_le_bytes(word) as f64,
             Self::F64 => f64::from_le_bytes(word),
         }
+    }
+
+    /// Returns an integer of 32 or 64 bits that single precision does not hold exactly. `None` for other
+    /// numbers.
+    pub fn inexact_integer(self, bytes: &[u8], is_big_endian: bool) -> Option<i128> {
+        let word = self.word(bytes, is_big_endian);
+        let [a, b, c, d, ..] = word;
+        let integer = match self {
+            Self::I32 => i128::from(i32::from_le_bytes([a, b, c, d])),
+            Self::U32 => i128::from(u32::from_le_bytes([a, b, c, d])),
+            Self::I64 => i128::from(i64::from_le_bytes(word)),
+            Self::U64 => i128::from(u64::from_le_bytes(word)),
+            _ => return None,
+        };
+        (integer as f32 as i128 != integer).then_some(integer)
+    }
+
+    /// Returns the bytes of a number in little-endian order, followed by zeros.
+    fn word(self, bytes: &[u8], is_big_endian: bool) -> [u8; 8] {
+        let mut word = [0; 8];
+        let used = &mut word[..self.bytes()];
+        used.copy_from_slice(bytes);
+        if is_big_endian {
+            used.reverse();
+        }
+        word
     }
 }
 
@@ -149,17 +180,14 @@ struct Bytes<'a> {
 
 impl<'a> Bytes<'a> {
     fn of(bytes: &'a [u8]) -> Result<Self, PositionedProblem> {
-        let expected = "the length of a header, 348 or 540";
         let Some(first) = bytes.first_chunk::<4>() else {
-            let found = format!("{} bytes", bytes.len());
-            return Err(unexpected(FilePosition::Byte(0), expected, found));
+            return Err(no_scan(bytes));
         };
         let lengths = [i32::from_le_bytes(*first), i32::from_be_bytes(*first)];
         let known = [(348, 0), (540, 1)];
         let found = known.iter().find(|(length, _)| lengths.contains(length));
-        let &(length, version) = found.ok_or_else(|| {
-            unexpected(FilePosition::Field("sizeof_hdr", 0), expected, lengths[0])
-        })?;
+        let &(length, version) = found.ok_or_else(|| no_scan(bytes))?;
+        let kind = FileType::of(bytes);
         let Some(bytes) = bytes.get(..length as usize) else {
             let expected = format!("a header of {length} bytes");
             return Err(unexpected(FilePosition::Byte(0), expected, bytes.len()));
@@ -171,12 +199,13 @@ impl<'a> Bytes<'a> {
                 "\"{}\", header and voxels in one file",
                 magic.escape_ascii()
             );
-            let found = format!("\"{}\"", found.escape_ascii());
-            return Err(unexpected(
-                FilePosition::Field("magic", at),
-                expected,
-                found,
-            ));
+            let mut text = format!("\"{}\"", found.escape_ascii());
+            if found.starts_with(b"ni") {
+                text += ", the header of a pair of files (.hdr and .img)";
+            } else if kind == FileType::Analyze {
+                text += ", as in an Analyze header (.hdr)";
+            }
+            return Err(unexpected(FilePosition::Field("magic", at), expected, text));
         }
         Ok(Self {
             bytes,
@@ -208,6 +237,26 @@ impl<'a> Bytes<'a> {
     }
 }
 
+/// Returns the problem of a file that does not begin as a scan. Names the type of its content, if known.
+fn no_scan(bytes: &[u8]) -> PositionedProblem {
+    let kind = FileType::of(bytes);
+    let is_scan = matches!(kind, FileType::Nifti1 | FileType::Nifti2);
+    if !is_scan && kind != FileType::Unknown {
+        return unexpected(FilePosition::File, "a NIfTI scan (.nii or .nii.gz)", kind);
+    }
+    let expected = "the length of a header, 348 or 540";
+    match bytes.first_chunk::<4>() {
+        Some(first) => {
+            let found = i32::from_le_bytes(*first);
+            unexpected(FilePosition::Field("sizeof_hdr", 0), expected, found)
+        }
+        None => {
+            let found = format!("{} bytes", bytes.len());
+            unexpected(FilePosition::Byte(0), expected, found)
+        }
+    }
+}
+
 fn size(bytes: &Bytes) -> Result<[usize; 3], PositionedProblem> {
     let axes = bytes.number(&DIM, 0);
     if !(3.0..=7.0).contains(&axes) {
@@ -233,7 +282,9 @@ fn size(bytes: &Bytes) -> Result<[usize; 3], PositionedProblem> {
     Ok(bytes.vector(&DIM, 1).map(|voxels| voxels as usize))
 }
 
-fn number(bytes: &Bytes) -> Result<NumberFormat, PositionedProblem> {
+/// Returns the number format of a voxel. The datatype alone decides, as in the reference library; the field
+/// `bitpix` repeats its number of bits.
+fn number(bytes: &Bytes, notes: &mut Vec<String>) -> Result<NumberFormat, PositionedProblem> {
     let number = match bytes.number(&DATATYPE, 0) as i32 {
         2 => NumberFormat::U8,
         4 => NumberFormat::I16,
@@ -243,22 +294,36 @@ fn number(bytes: &Bytes) -> Result<NumberFormat, PositionedProblem> {
         256 => NumberFormat::I8,
         512 => NumberFormat::U16,
         768 => NumberFormat::U32,
+        1024 => NumberFormat::I64,
+        1280 => NumberFormat::U64,
         _ => {
-            let expected = "2, 4, 8, 16, 64, 256, 512 or 768: integers up to 32 bits, or floating-point numbers";
+            let expected = "2, 4, 8, 16, 64, 256, 512, 768, 1024 or 1280: integers, or floating-point numbers of 32 or 64 bits";
             return Err(bytes.wrong(&DATATYPE, 0, expected));
         }
     };
     let bits = 8 * number.bytes();
-    if bytes.number(&BITPIX, 0) != bits as f64 {
-        let expected = format!("{bits}, the bits of that datatype");
-        return Err(bytes.wrong(&BITPIX, 0, &expected));
+    let found = bytes.number(&BITPIX, 0);
+    if found != bits as f64 {
+        notes.push(format!(
+            "bitpix: expected {bits}, the bits of datatype {}, found {found}; the datatype was used",
+            bytes.number(&DATATYPE, 0)
+        ));
     }
     Ok(number)
 }
 
+/// Returns the offset of the first voxel. In a single file, four bytes always stand between the header and the
+/// first voxel: they tell whether header extensions follow.
 fn offset(bytes: &Bytes) -> Result<usize, PositionedProblem> {
     let found = bytes.number(&VOX_OFFSET, 0);
-    let least = bytes.bytes.len() as f64;
+    let header = bytes.bytes.len();
+    let least = (header + EXTENDER) as f64;
+    if found < least {
+        let expected = format!(
+            "voxels behind the header of {header} bytes and its {EXTENDER} bytes for extensions, at byte {least} or later"
+        );
+        return Err(bytes.wrong(&VOX_OFFSET, 0, &expected));
+    }
     if !(least..=MAX_OFFSET).contains(&found) || found % 1.0 != 0.0 {
         let expected = format!("a whole number from {least} to {MAX_OFFSET}");
         return Err(bytes.wrong(&VOX_OFFSET, 0, &expected));
@@ -281,7 +346,9 @@ fn scale(bytes: &Bytes) -> Result<[f64; 2], PositionedProblem> {
         .ok_or_else(complaint)
 }
 
-fn placement(bytes: &Bytes) -> Result<Placement, PositionedProblem> {
+/// Returns the placement by the first of sform, qform and pixdim that is valid. Adds a note for each form that
+/// the header declares valid but is not.
+fn placement(bytes: &Bytes, notes: &mut Vec<String>) -> Result<Placement, PositionedProblem> {
     // The lowest three bits of the field give the unit of length. Most programs that leave it at 0 mean
     // millimetres.
     let unit = match bytes.number(&XYZT_UNITS, 0) as i32 & 7 {
@@ -293,24 +360,46 @@ fn placement(bytes: &Bytes) -> Result<Placement, PositionedProblem> {
             return Err(bytes.wrong(&XYZT_UNITS, 0, expected));
         }
     };
+    let mut wrong = Vec::new();
+    for (name, field, form) in placement_forms(bytes) {
+        match Placement::of(&form, unit) {
+            Ok(placement) => {
+                notes.extend(wrong.iter().map(|(form, _, problem)| {
+                    format!("the {form} is invalid: {problem}; the {name} was used")
+                }));
+                return Ok(placement);
+            }
+            Err(problem) => wrong.push((name, field, problem)),
+        }
+    }
+    let (_, field, problem) = wrong.remove(0);
+    let others = wrong.iter();
+    let others: String = others
+        .map(|(form, _, problem)| format!("; nor is the {form} valid: {problem}"))
+        .collect();
+    let found = problem.found + &others;
+    Err(unexpected(bytes.place(field, 0), problem.expected, found))
+}
+
+/// Returns the forms of the placement that a header contains, each with its name and field. The most precise
+/// form is the first.
+fn placement_forms(bytes: &Bytes) -> Vec<(&'static str, &'static Field, PlacementForm)> {
     let spacing = bytes.vector(&PIXDIM, 1);
-    let forms = PlacementForms {
-        sform: (bytes.number(&SFORM_CODE, 0) > 0.0).then(|| {
-            let row = |row: usize| [0, 1, 2, 3].map(|column| bytes.number(&SROW, 4 * row + column));
-            [0, 1, 2].map(row)
-        }),
-        qform: (bytes.number(&QFORM_CODE, 0) > 0.0).then(|| Quaternion {
+    let mut forms = Vec::new();
+    if bytes.number(&SFORM_CODE, 0) > 0.0 {
+        let row = |row: usize| [0, 1, 2, 3].map(|column| bytes.number(&SROW, 4 * row + column));
+        let affine = [0, 1, 2].map(row);
+        forms.push(("sform", &SROW, PlacementForm::Matrix(affine)));
+    }
+    if bytes.number(&QFORM_CODE, 0) > 0.0 {
+        let rotation = Quaternion {
             imaginary: bytes.vector(&QUATERN, 0),
             offset: bytes.vector(&QOFFSET, 0),
             is_left_handed: bytes.number(&PIXDIM, 0) < 0.0,
-        }),
-        spacing,
-    };
-    let field = match (&forms.sform, &forms.qform) {
-        (Some(_), _) => &SROW,
-        (None, Some(_)) => &QUATERN,
-        (None, None) => &PIXDIM,
-    };
-    let placement = Placement::of(&forms, unit);
-    placement.map_err(|wrong| unexpected(bytes.place(field, 0), wrong.expected, wrong.found))
+        };
+        let form = PlacementForm::Rotation(rotation, spacing);
+        forms.push(("qform", &QUATERN, form));
+    }
+    forms.push(("pixdim", &PIXDIM, PlacementForm::Spacing(spacing)));
+    forms
 }

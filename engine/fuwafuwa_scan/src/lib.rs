@@ -54,6 +54,7 @@
 #![allow(clippy::needless_range_loop)] // an axis indexes several vectors at once
 
 mod header;
+mod notes;
 mod organ;
 mod parse;
 mod placement;
@@ -63,6 +64,7 @@ mod segmentation;
 mod stream;
 
 pub use header::MAX_VOXELS;
+pub use notes::warnings;
 pub use organ::{Options, Organ, OrganError, RESOLUTIONS};
 pub use parse::{Label, Threshold};
 pub use placement::{Placement, PlacementSource, SPACINGS};

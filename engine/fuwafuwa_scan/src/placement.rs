@@ -1,5 +1,6 @@
 //! Position of a scan's voxels in the patient.
 
+use std::fmt;
 use std::ops::RangeInclusive;
 
 /// Allowed spacing of a scan's voxels [mm].
@@ -33,17 +34,19 @@ pub struct Placement {
 pub enum PlacementSource {
     /// Matrix, the sform of the header.
     Matrix,
-    /// Rotation, the qform of the header; used if there is no matrix.
+    /// Rotation, the qform of the header; used if there is no valid matrix.
     Rotation,
     /// Spacing of voxels only. Left and right are then unknown, and the usual orientation is assumed.
     Spacing,
 }
 
-/// Placement data of a header, in each of the three forms that NIfTI defines.
-pub struct PlacementForms {
-    pub sform: Option<Affine>,
-    pub qform: Option<Quaternion>,
-    pub spacing: [f64; 3],
+/// Placement data of a header, in one of the three forms that NIfTI defines. Lengths are in units of the
+/// header.
+pub enum PlacementForm {
+    Matrix(Affine),
+    /// Rotation, and spacing of voxels.
+    Rotation(Quaternion, [f64; 3]),
+    Spacing([f64; 3]),
 }
 
 /// Rotation, and position of the first voxel.
@@ -55,19 +58,27 @@ pub struct Quaternion {
 }
 
 /// Problem with a placement.
+#[derive(Debug)]
 pub struct PlacementProblem {
     pub expected: &'static str,
     pub found: String,
 }
 
+impl fmt::Display for PlacementProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "expected {}, found {}", self.expected, self.found)
+    }
+}
+
 impl Placement {
-    /// Creates a placement from the first form present, in the order matrix, rotation, spacing. `unit` is the
-    /// length of one unit of these forms [mm].
-    pub(crate) fn of(forms: &PlacementForms, unit: f64) -> Result<Self, PlacementProblem> {
-        let (affine, source) = match (&forms.sform, &forms.qform) {
-            (Some(affine), _) => (*affine, PlacementSource::Matrix),
-            (None, Some(rotation)) => (rotation.affine(forms.spacing)?, PlacementSource::Rotation),
-            (None, None) => (scaling(forms.spacing), PlacementSource::Spacing),
+    /// Creates a placement from a form. `unit` is the length of one unit of the form [mm].
+    pub(crate) fn of(form: &PlacementForm, unit: f64) -> Result<Self, PlacementProblem> {
+        let (affine, source) = match form {
+            PlacementForm::Matrix(affine) => (*affine, PlacementSource::Matrix),
+            PlacementForm::Rotation(rotation, spacing) => {
+                (rotation.affine(*spacing)?, PlacementSource::Rotation)
+            }
+            PlacementForm::Spacing(spacing) => (scaling(*spacing), PlacementSource::Spacing),
         };
         let affine = affine.map(|row| row.map(|k| k * unit));
         check(&affine)?;
@@ -224,17 +235,12 @@ mod tests {
 
     #[test]
     fn voxel_at_inverts_patient_at() {
-        let sform = Some([
+        let form = PlacementForm::Matrix([
             [0.0, -1.5, 0.2, 90.0],
             [0.7, 0.1, 0.0, -126.0],
             [0.1, 0.0, 2.0, -72.0],
         ]);
-        let forms = PlacementForms {
-            sform,
-            qform: None,
-            spacing: [1.0; 3],
-        };
-        let placement = Placement::of(&forms, 1.0).ok().unwrap();
+        let placement = Placement::of(&form, 1.0).unwrap();
         let voxel = [3.0, -40.5, 17.0];
         let back = placement.voxel_at(placement.patient_at(voxel));
         for axis in 0..3 {

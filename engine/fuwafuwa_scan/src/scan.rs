@@ -3,7 +3,7 @@
 use crate::header::{Header, LONGEST};
 use crate::placement::Placement;
 use crate::stream::Stream;
-use fuwafuwa_scenes::import::{ImportError, PositionedProblem, in_file};
+use fuwafuwa_scenes::import::{FilePosition, ImportError, PositionedProblem, in_file, unexpected};
 
 /// Number of voxels read between two calls of `progress`.
 const CHUNK: usize = 1 << 16;
@@ -17,13 +17,15 @@ pub struct Scan {
     lowest: f32,
     highest: f32,
     placement: Placement,
+    notes: Vec<String>,
 }
 
 impl Scan {
     /// Decodes a NIfTI file, version 1 or 2, with header and voxels in one file, plain or gzipped. `file` is
     /// the name used in errors; `progress` is called with increasing numbers from 0 to 1.
     ///
-    /// Values that are not finite are replaced by the lowest finite value.
+    /// Values are stored in single precision. Values that are not finite are replaced by the lowest finite
+    /// value. [`Scan::notes`] tells what was replaced or ignored.
     ///
     /// # Errors
     /// [`ImportError`] names the field of the header or the byte, what was expected and what was found.
@@ -48,6 +50,16 @@ impl Scan {
     /// Returns the lowest and the highest value.
     pub fn range(&self) -> [f32; 2] {
         [self.lowest, self.highest]
+    }
+
+    /// Returns sentences for the user about fields and values that were replaced, and bytes that were ignored.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Returns the values of all voxels, with the first axis fastest.
+    pub(crate) fn values(&self) -> &[f32] {
+        &self.values
     }
 
     /// Returns the value of the voxel nearest to a position in the scan [voxels]; outside the scan, the
@@ -104,14 +116,28 @@ fn try_decode(bytes: &[u8], mut progress: impl FnMut(f32)) -> Result<Scan, Posit
     let beginning = &beginning[..length];
     let header = Header::read(beginning)?;
     stream.check(header.bytes())?;
-    let mut values = read(&header, beginning, &mut stream, &mut progress)?;
-    stream.finish()?;
+    let mut notes = header.notes.clone();
+    let mut values = read(&header, beginning, &mut stream, &mut progress, &mut notes)?;
+    let ignored = stream.finish()?;
+    if ignored > 0 {
+        notes.push(format!(
+            "{ignored} bytes behind the gzip data are not gzip data, and were ignored"
+        ));
+    }
 
     let finite = || values.iter().copied().filter(|k| k.is_finite());
     let lowest = finite().min_by(f32::total_cmp).unwrap_or(0.0);
     let highest = finite().max_by(f32::total_cmp).unwrap_or(0.0);
+    let mut replaced = 0;
     for value in values.iter_mut().filter(|k| !k.is_finite()) {
         *value = lowest;
+        replaced += 1;
+    }
+    if replaced > 0 {
+        notes.push(format!(
+            "{replaced} of {} values are not finite, and were replaced by {lowest}, the lowest",
+            values.len()
+        ));
     }
     Ok(Scan {
         size: header.size,
@@ -119,6 +145,7 @@ fn try_decode(bytes: &[u8], mut progress: impl FnMut(f32)) -> Result<Scan, Posit
         lowest,
         highest,
         placement: header.placement,
+        notes,
     })
 }
 
@@ -128,6 +155,7 @@ fn read(
     beginning: &[u8],
     stream: &mut Stream,
     progress: &mut impl FnMut(f32),
+    notes: &mut Vec<String>,
 ) -> Result<Vec<f32>, PositionedProblem> {
     let (count, width) = (header.voxels(), header.number.bytes());
     let [slope, inter] = header.scale;
@@ -144,15 +172,47 @@ fn read(
         ahead -= part;
     }
     let mut values = Vec::with_capacity(count);
+    let mut rounded = 0;
     while values.len() < count {
         progress(values.len() as f32 / count as f32);
         let wanted = (count - values.len()).min(CHUNK) * width;
         let had = buffer.len().min(wanted);
         buffer.resize(wanted, 0);
         stream.fill_all(&mut buffer[had..], header.bytes())?;
+        let first = header.offset + values.len() * width;
+        rounded += check_integers(header, &buffer, first)?;
         values.extend(buffer.chunks_exact(width).map(value));
         buffer.clear();
     }
+    if rounded > 0 {
+        notes.push(format!(
+            "{rounded} of {count} values are integers beyond 16777216, and were rounded to single precision"
+        ));
+    }
     progress(1.0);
     Ok(values)
+}
+
+/// Returns the number of integers that single precision does not hold exactly. `first` is the offset of the
+/// first integer in the file [bytes].
+///
+/// # Errors
+/// The first such integer of 64 bits. Integers of that length are labels, so that a rounded one is another
+/// label.
+fn check_integers(header: &Header, bytes: &[u8], first: usize) -> Result<usize, PositionedProblem> {
+    let mut rounded = 0;
+    let width = header.number.bytes();
+    for (index, number) in bytes.chunks_exact(width).enumerate() {
+        let Some(found) = header.number.inexact_integer(number, header.is_big_endian) else {
+            continue;
+        };
+        if width == 8 {
+            let at = FilePosition::Byte(first + index * width);
+            let expected =
+                "64-bit integers that single precision holds exactly, as all up to 16777216";
+            return Err(unexpected(at, expected, found));
+        }
+        rounded += 1;
+    }
+    Ok(rounded)
 }

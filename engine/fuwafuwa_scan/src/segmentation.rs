@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 /// Minimum sum of the probability maps at a solid position.
-const SOLID: f32 = 0.5;
+pub(crate) const SOLID: f32 = 0.5;
 
 /// Rule that gives the material at a position; 0 means empty.
 #[derive(Clone, Debug, PartialEq)]

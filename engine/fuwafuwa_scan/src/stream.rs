@@ -1,8 +1,8 @@
 //! Sequential access to the bytes of a file, decompressed on demand.
 
-use flate2::bufread::MultiGzDecoder;
+use flate2::bufread::GzDecoder;
 use fuwafuwa_scenes::import::{FilePosition, PositionedProblem, too_large, unexpected};
-use std::io::Read;
+use std::io::{self, Read};
 
 /// Maximum size of a file and of its decompressed content, in bytes. Large enough for [`crate::MAX_VOXELS`]
 /// 64-bit numbers and the bytes before them.
@@ -11,8 +11,8 @@ pub const MAX_FILE_BYTES: u64 = (1 << 30) + (1 << 26);
 /// Maximum expansion by deflate: number of decompressed bytes per compressed byte.
 const MOST_INFLATED: u64 = 1032;
 
-/// First two bytes of a gzip file.
-const GZIP: [u8; 2] = [0x1f, 0x8b];
+/// First bytes of a gzip member: its signature, and deflate as its only method.
+const GZIP: [u8; 3] = [0x1f, 0x8b, 8];
 
 /// Maximum number of bytes after the last voxel. Some files end with padding, but longer data is treated as
 /// an attack.
@@ -29,7 +29,47 @@ pub struct Stream<'a> {
 
 enum Source<'a> {
     Plain(&'a [u8]),
-    Zipped(Box<MultiGzDecoder<&'a [u8]>>),
+    Zipped(Members<'a>),
+}
+
+/// Members of a gzip file, which are decompressed one after the other. Zeros between and behind members are
+/// padding, as for `gunzip`.
+struct Members<'a> {
+    /// Decoder of the current member; `None` after the last member.
+    decoder: Option<Box<GzDecoder<&'a [u8]>>>,
+    /// Number of bytes behind the last member, from the first byte on that is not zero.
+    ignored: usize,
+}
+
+impl<'a> Members<'a> {
+    fn of(bytes: &'a [u8]) -> Self {
+        Self {
+            decoder: Some(Box::new(GzDecoder::new(bytes))),
+            ignored: 0,
+        }
+    }
+
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        while let Some(mut decoder) = self.decoder.take() {
+            let count = decoder.read(buffer)?;
+            if count > 0 {
+                self.decoder = Some(decoder);
+                return Ok(count);
+            }
+            self.go_on(decoder.into_inner());
+        }
+        Ok(0)
+    }
+
+    /// Starts the next member, if `rest`, the bytes behind the last one, contains a member.
+    fn go_on(&mut self, rest: &'a [u8]) {
+        let padding = rest.iter().take_while(|&&byte| byte == 0).count();
+        let rest = &rest[padding..];
+        match rest.starts_with(&GZIP) {
+            true => *self = Self::of(rest),
+            false => self.ignored = rest.len(),
+        }
+    }
 }
 
 impl<'a> Stream<'a> {
@@ -45,10 +85,7 @@ impl<'a> Stream<'a> {
         }
         let is_zipped = bytes.starts_with(&GZIP);
         let (source, most) = match is_zipped {
-            true => (
-                Source::Zipped(Box::new(MultiGzDecoder::new(bytes))),
-                length * MOST_INFLATED,
-            ),
+            true => (Source::Zipped(Members::of(bytes)), length * MOST_INFLATED),
             false => (Source::Plain(bytes), length),
         };
         let at = 0;
@@ -71,7 +108,7 @@ impl<'a> Stream<'a> {
             let rest = &mut buffer[filled..];
             let read = match &mut self.source {
                 Source::Plain(bytes) => bytes.read(rest),
-                Source::Zipped(decoder) => decoder.read(rest),
+                Source::Zipped(members) => members.read(rest),
             };
             let at = FilePosition::Byte((self.at + filled as u64) as usize);
             match read.map_err(|error| unexpected(at, "valid gzip data", error))? {
@@ -98,8 +135,8 @@ impl<'a> Stream<'a> {
     }
 
     /// Reads the remaining bytes, at most `MAX_TRAILING`. At the end of its data, a gzip stream verifies
-    /// its checksum.
-    pub fn finish(mut self) -> Result<(), PositionedProblem> {
+    /// its checksum. Returns the number of bytes behind the gzip data that are not padding.
+    pub fn finish(mut self) -> Result<usize, PositionedProblem> {
         let mut buffer = [0; 1 << 12];
         let mut trailing = 0;
         loop {
@@ -110,7 +147,10 @@ impl<'a> Stream<'a> {
                 return Err(too_large(FilePosition::File, what, trailing, MAX_TRAILING));
             }
             if filled < buffer.len() {
-                return Ok(());
+                return Ok(match self.source {
+                    Source::Zipped(members) => members.ignored,
+                    Source::Plain(_) => 0,
+                });
             }
         }
     }

@@ -4,7 +4,7 @@ mod phantom;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use fuwafuwa_scan::{Options, Organ, Scan, Segmentation};
+use fuwafuwa_scan::{Options, Organ, PlacementSource, Scan, Segmentation, warnings};
 use fuwafuwa_scenes::import::{FilePosition, ImportError, Problem};
 use phantom::File;
 use std::io::Write;
@@ -67,7 +67,7 @@ fn error_names_field_expectation_and_value() {
         ),
         (
             with(344, b"ni1\0"),
-            "magic at byte 344: expected \"n+1\\x00\", header and voxels in one file, found \"ni1\\x00\"",
+            "magic at byte 344: expected \"n+1\\x00\", header and voxels in one file, found \"ni1\\x00\", the header of a pair",
         ),
         (
             with(40, &whole(2)),
@@ -92,13 +92,12 @@ fn error_names_field_expectation_and_value() {
         ),
         (with(70, &whole(128)), "datatype at byte 70"),
         (
-            with(72, &whole(8)),
-            "bitpix at byte 72: expected 16, the bits of that datatype, found 8",
+            with(108, &real(350.0)),
+            "vox_offset at byte 108: expected voxels behind the header of 348 bytes and its 4 bytes for extensions, at byte \
+             352 or later, found 350",
         ),
-        (
-            with(108, &real(347.0)),
-            "vox_offset at byte 108: expected a whole number from 348 to 67108864, found 347",
-        ),
+        (with(108, &real(348.0)), "at byte 352 or later, found 348"),
+        (with(108, &real(0.0)), "at byte 352 or later, found 0"),
         (with(108, &real(352.5)), "vox_offset"),
         (with(108, &real(f32::NAN)), "vox_offset"),
         (with(108, &real(-1e30)), "vox_offset"),
@@ -111,25 +110,6 @@ fn error_names_field_expectation_and_value() {
             "scl_inter at byte 116: expected a finite number",
         ),
         (with(123, &[4]), "xyzt_units at byte 123"),
-        (
-            with(280, &real(f32::NAN)),
-            "srow at byte 280: expected finite numbers",
-        ),
-        (
-            with(292, &real(f32::INFINITY)),
-            "srow at byte 280: expected finite numbers",
-        ),
-        (with(292, &real(1e30)), "the first voxel within a kilometre"),
-        (with(280, &real(0.0)), "voxels 0.001 to 100 mm apart"),
-        (with(280, &real(1e9)), "voxels 0.001 to 100 mm apart"),
-        // Matrix with the second axis parallel to the first.
-        (
-            with(
-                280,
-                &[real(1.0), real(1.0), real(0.0), real(0.0), [0; 4], [0; 4]].concat(),
-            ),
-            "three independent axes",
-        ),
     ] {
         let found = error(&bytes).to_string();
         assert!(
@@ -137,16 +117,178 @@ fn error_names_field_expectation_and_value() {
             "{found:?} does not contain {expect:?}"
         );
     }
-    // Rotation by a quaternion with an imaginary part longer than 1.
-    let mut bytes = with(252, &[whole(1), whole(0)].concat());
-    bytes[256..260].copy_from_slice(&real(1.1));
-    let found = error(&bytes).to_string();
+}
+
+/// Returns a file with some bytes of the header replaced, and with valid qform (mirrored in x) and pixdim.
+fn with_forms(changes: &[(usize, Vec<u8>)]) -> Vec<u8> {
+    let mut file = small(1).bytes();
+    let code = 1_i16.to_le_bytes();
+    // The quaternion (0, 0, 1) is half a turn about the third axis.
+    let mut put = |at: usize, bytes: &[u8]| file[at..at + bytes.len()].copy_from_slice(bytes);
+    put(252, &code);
+    put(254, &code);
+    put(264, &1_f32.to_le_bytes());
+    for (at, bytes) in changes {
+        put(*at, bytes);
+    }
+    file
+}
+
+#[test]
+fn placement_falls_back_to_the_next_valid_form_and_tells_why() {
+    let real = |number: f32| number.to_le_bytes().to_vec();
+    let zeros = vec![0; 48];
+    // Matrix with the second axis parallel to the first.
+    let flat = [
+        1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0_f32,
+    ];
+    let flat: Vec<u8> = flat.into_iter().flat_map(f32::to_le_bytes).collect();
+    for (sform, reason) in [
+        ((280, zeros.clone()), "voxels 0.001 to 100 mm apart"),
+        ((280, flat), "three independent axes"),
+        ((280, real(f32::NAN)), "finite numbers"),
+        ((292, real(f32::INFINITY)), "finite numbers"),
+        ((292, real(1e30)), "the first voxel within a kilometre"),
+        ((280, real(1e9)), "voxels 0.001 to 100 mm apart"),
+    ] {
+        let scan = decode(&with_forms(std::slice::from_ref(&sform))).unwrap();
+        assert_eq!(scan.placement().source(), PlacementSource::Rotation);
+        assert_eq!(scan.placement().patient_at([1.0; 3]), [-1.0, -1.0, 1.0]);
+        let [note] = scan.notes() else {
+            panic!("{:?}", scan.notes());
+        };
+        assert!(note.starts_with("the sform is invalid"), "{note}");
+        assert!(note.contains(reason), "{note}");
+        assert!(note.ends_with("the qform was used"), "{note}");
+
+        // Imaginary part of a quaternion that is longer than 1, or no number.
+        for quaternion in [1.1, f32::NAN] {
+            let both = [sform.clone(), (256, real(quaternion))];
+            let scan = decode(&with_forms(&both)).unwrap();
+            assert_eq!(scan.placement().source(), PlacementSource::Spacing);
+            assert_eq!(scan.placement().patient_at([1.0; 3]), [1.0; 3]);
+            assert_eq!(scan.notes().len(), 2, "{:?}", scan.notes());
+            assert!(scan.notes()[1].starts_with("the qform is invalid"));
+        }
+    }
+    let bad = [(280, zeros), (256, real(f32::NAN)), (80, real(0.0))];
+    let found = error(&with_forms(&bad)).to_string();
+    for word in ["srow at byte 280", "nor is the qform", "nor is the pixdim"] {
+        assert!(found.contains(word), "{found}");
+    }
+    assert!(decode(&with_forms(&[])).unwrap().notes().is_empty());
+}
+
+#[test]
+fn datatype_decides_over_bitpix() {
+    let scan = decode(&with(72, &8_i16.to_le_bytes())).unwrap();
+    assert_eq!(scan.range(), [0.0, 59.0]);
+    let expected = "bitpix: expected 16, the bits of datatype 4, found 8; the datatype was used";
+    assert_eq!(scan.notes(), [expected]);
+}
+
+#[test]
+fn other_files_are_named() {
+    let at = |offset: usize, text: &[u8]| [&vec![0; offset], text, &[0; 400]].concat();
+    let lfs = b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12345\n";
+    let mgh = [1_i32, 256, 256, 256, 1, 0].map(i32::to_be_bytes).concat();
+    for (bytes, name) in [
+        (lfs.to_vec(), "a Git LFS pointer, not the file itself"),
+        (b"<!DOCTYPE html><title>404</title>".to_vec(), "a web page"),
+        (b"PK\x03\x04\x14\0".to_vec(), "a ZIP archive"),
+        (at(257, b"ustar"), "an archive"),
+        (mgh, "a FreeSurfer scan"),
+        (b"NRRD0004\ntype: short\n".to_vec(), "an NRRD scan"),
+        (at(128, b"DICM"), "a DICOM file"),
+        (at(0, &348_i32.to_le_bytes()), "an Analyze header"),
+        (Vec::new(), "an empty file"),
+    ] {
+        for bytes in [bytes.clone(), zipped(&bytes)] {
+            let found = error(&bytes).to_string();
+            assert!(found.starts_with("test.nii"), "{found}");
+            assert!(found.contains(name), "{found}");
+        }
+    }
+}
+
+#[test]
+fn padding_and_members_of_gzip_are_read() {
+    let whole = small(1).bytes();
+    let range = decode(&whole).unwrap().range();
+    let zeros = vec![0; 1000];
+    let parts = [zipped(&whole[..400]), zipped(&whole[400..])];
+    for padded in [
+        [&zipped(&whole)[..], &zeros].concat(),
+        parts.concat(),
+        [&parts[0][..], &zeros, &parts[1], &zeros].concat(),
+    ] {
+        let scan = decode(&padded).unwrap();
+        assert_eq!((scan.range(), scan.notes().len()), (range, 0));
+    }
+    // The first eight zeros are padding; the other bytes are not.
+    for noise in [&b"\x1f\x8b"[..], b"\0\0\0\0\0\0\0\0more", b"\xff"] {
+        let scan = decode(&[&zipped(&whole), noise].concat()).unwrap();
+        assert_eq!(scan.range(), range);
+        let count = noise.iter().skip_while(|byte| **byte == 0).count();
+        let start = format!("{count} bytes behind the gzip data");
+        assert!(scan.notes()[0].starts_with(&start), "{:?}", scan.notes());
+    }
+    // The second member is cut short, so that voxels are missing.
+    let cut = parts[1].len() / 2;
+    error(&[&parts[0][..], &parts[1][..cut]].concat());
+}
+
+#[test]
+fn integers_of_64_bits_are_read_if_single_precision_holds_them() {
+    for is_big_endian in [false, true] {
+        for (datatype, values) in [
+            (1024, [-16_777_216.0, 14_175.0, 1_099_511_627_776.0]),
+            (
+                1280,
+                [0.0, 16_777_216.0, 18_446_744_073_709_551_616.0 / 2.0],
+            ),
+        ] {
+            let mut file = File::small([3, 1, 1], &values);
+            (file.datatype, file.is_big_endian) = (datatype, is_big_endian);
+            let scan = file.scan();
+            assert_eq!(scan.range(), [values[0] as f32, values[2] as f32]);
+            file.values[1] = 16_777_217.0;
+            let found = error(&file.bytes()).to_string();
+            let expected = "byte 360: expected 64-bit integers that single precision holds exactly, \
+                            as all up to 16777216, found 16777217";
+            assert!(found.contains(expected), "{found}");
+        }
+    }
+    let mut file = File::small([3, 1, 1], &[0.0, 16_777_217.0, 33_554_435.0]);
+    file.datatype = 8;
+    let scan = file.scan();
     assert!(
-        found.contains("quatern at byte 256: expected the imaginary part"),
-        "{found}"
+        scan.notes()[0].starts_with("2 of 3 values"),
+        "{:?}",
+        scan.notes()
     );
-    bytes[256..260].copy_from_slice(&real(f32::NAN));
-    assert!(error(&bytes).to_string().contains("quatern"));
+}
+
+#[test]
+fn labels_that_are_lost_are_told() {
+    let labels = File::small([2, 2, 2], &[0.0, 1.0, 2.0, 3.0, 7.0, 7.0, 0.0, 4.0]).scan();
+    let told =
+        |scan: &Scan, segmentation: &Segmentation| warnings(&[("it.nii", scan)], segmentation);
+    let lost = told(&labels, &Segmentation::Maps);
+    assert_eq!(lost.len(), 1, "{lost:?}");
+    for word in ["it.nii: ", "below 3.5", "(1, 2, 3)", "--label"] {
+        assert!(lost[0].contains(word), "{lost:?}");
+    }
+    let absent = told(&labels, &Segmentation::labels(&[(7, 1), (17, 2)]));
+    assert!(
+        absent[0].contains("no voxel has the label 17"),
+        "{absent:?}"
+    );
+    assert!(absent[0].contains("1, 2, 3, 4, 7"), "{absent:?}");
+    assert!(told(&labels, &Segmentation::labels(&[(7, 1)])).is_empty());
+    assert!(told(&labels, &Segmentation::thresholds(&[(1.0..=2.0, 1)])).is_empty());
+    let mask = File::small([2, 1, 1], &[0.0, 255.0]).scan();
+    assert!(told(&mask, &Segmentation::Maps).is_empty());
 }
 
 #[test]

@@ -172,7 +172,7 @@ fn decode_gives_same_values_for_each_encoding() {
     let expected: Vec<f32> = values.iter().map(|&k| k as f32).collect();
     for version in [1, 2] {
         for is_big_endian in [false, true] {
-            for datatype in [2, 4, 8, 16, 64, 256, 512, 768] {
+            for datatype in [2, 4, 8, 16, 64, 256, 512, 768, 1024, 1280] {
                 for scale in [[1.0, 0.0], [0.5, -2.0], [0.0, 9.0], [f64::NAN, 9.0]] {
                     let mut file = plain.clone();
                     file.version = version;

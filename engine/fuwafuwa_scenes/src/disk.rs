@@ -64,7 +64,9 @@ pub fn reader_in(folder: &Path) -> impl Fn(&str) -> io::Result<Vec<u8>> {
 /// [`SceneError`] names the file, the line and the field.
 pub fn open_scene(place: &str, changes: &[String]) -> Result<Scene, SceneError> {
     let path = Path::new(place);
-    if NAMED.iter().any(|(name, _)| *name == place) || !path.exists() {
+    // Other errors, for example of a folder without permission, are reported with their reason below.
+    let is_missing = matches!(path.metadata(), Err(error) if error.kind() == ErrorKind::NotFound);
+    if is_missing || NAMED.iter().any(|(name, _)| *name == place) {
         return Scene::open(place, changes);
     }
     let text = read_text(path, MAX_TEXT_BYTES).map_err(|source| SceneError::File {
@@ -97,6 +99,18 @@ mod tests {
             assert_eq!(refused(bytes), expected);
         }
         assert_eq!(text_of(b"dim = 2".to_vec()).unwrap(), "dim = 2");
+    }
+
+    #[test]
+    fn scene_that_cannot_be_opened_is_not_called_missing() {
+        let folder = std::env::temp_dir();
+        let error = open_scene(&folder.display().to_string(), &[]).unwrap_err();
+        assert!(error.to_string().contains("found a folder"), "{error}");
+        let long = "n".repeat(300);
+        let error = open_scene(&long, &[]).unwrap_err();
+        assert!(matches!(error, SceneError::File { .. }), "{error}");
+        let error = open_scene("no-such-scene", &[]).unwrap_err();
+        assert!(matches!(error, SceneError::Unknown { .. }), "{error}");
     }
 
     #[cfg(unix)]

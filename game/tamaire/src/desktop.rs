@@ -5,13 +5,12 @@ mod report;
 mod window;
 
 use crate::game::Game;
-use crate::headless;
+use crate::headless::{self, is_link_argument};
 use crate::licences;
 use crate::platform::{Files, OpenRequest, Sound, level_at};
 use app_shell::Pads;
 use app_shell::window::{WindowOutcome, has_display};
 use clap::{CommandFactory, Parser, Subcommand};
-use std::io::Write;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -76,18 +75,20 @@ Exit status: 0 the round was played to its end, won or not; 1 the replay was rej
 
 /// Runs the program `tamaire` and returns its exit status.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments: Arguments = output::parse();
+    if let Some(error) = without_driver_messages(&arguments) {
+        output::warn(format_args!("tamaire: {error}"));
+    }
     match &arguments.chore {
         Some(Task::Report(options)) => return report::write(options),
         Some(Task::Manual(options)) => return manual::run(Arguments::command(), options),
         None => {}
     }
     if arguments.licences {
-        return print_licences();
+        return headless::print(licences::TEXT);
     }
     if arguments.list {
-        headless::list();
-        return ExitCode::SUCCESS;
+        return headless::list();
     }
     let mute = arguments.mute;
     match (&arguments.exhibit, &arguments.stand, &arguments.rest) {
@@ -103,14 +104,13 @@ pub fn main() -> ExitCode {
     // Checks a level given by `--level` and reports its errors on the terminal. Errors of a file opened by a
     // double click are shown in the window instead.
     if let (None, Some(level)) = (&arguments.file, &options.level)
+        && !is_link_argument(level)
         && let Err(mistake) = level_at(level)
     {
-        eprintln!("tamaire: {mistake}");
+        output::warn(format_args!("tamaire: {mistake}"));
         return ExitCode::from(headless::BAD_USAGE);
     }
-    let shown = arguments
-        .file
-        .or_else(|| options.level.clone().map(PathBuf::from));
+    let shown = arguments.file.or_else(|| options.level.clone());
     if arguments.headless {
         return headless::play(&options);
     }
@@ -128,12 +128,12 @@ pub fn main() -> ExitCode {
     match opened {
         WindowOutcome::Closed => ExitCode::SUCCESS,
         WindowOutcome::LostGpu => {
-            eprintln!("tamaire: the GPU was lost; restarting the game");
-            eprintln!("tamaire: {}", begin_anew());
+            output::warn("tamaire: the GPU was lost; restarting the game");
+            output::warn(format_args!("tamaire: {}", begin_anew()));
             ExitCode::FAILURE
         }
         WindowOutcome::Failed(error) => {
-            eprintln!("tamaire: {error}");
+            output::warn(format_args!("tamaire: {error}"));
             ExitCode::FAILURE
         }
         WindowOutcome::Broken(panic) => resume_unwind(panic),
@@ -163,17 +163,41 @@ fn again(program: &Path) -> Command {
     command
 }
 
-fn print_licences() -> ExitCode {
-    // Ignores a failure to write: the reader, for example a pager, may have been closed early.
-    let _read = std::io::stdout().write_all(licences::TEXT.as_bytes());
-    ExitCode::SUCCESS
+/// Replaces this process with one in which graphics drivers find no display, if pictures are made without a
+/// session. Otherwise Mesa looks for a Wayland display and prints errors about the missing `XDG_RUNTIME_DIR`.
+/// Returns only if nothing has to be done, or with the reason why the process cannot be replaced.
+#[cfg(all(unix, not(target_os = "macos")))]
+fn without_driver_messages(arguments: &Arguments) -> Option<std::io::Error> {
+    use std::os::unix::process::CommandExt;
+    /// Environment variable with the folder of the sockets of a session.
+    const SESSION: &str = "XDG_RUNTIME_DIR";
+    let options = &arguments.options;
+    let makes_pictures = match &arguments.chore {
+        Some(Task::Report(options)) => options.makes_clips(),
+        Some(Task::Manual(_)) => false,
+        None => arguments.headless && (options.film.is_some() || options.photo.is_some()),
+    };
+    let has_session =
+        std::env::var_os(SESSION).is_some_and(|folder| Path::new(&folder).is_absolute());
+    if !makes_pictures || has_session {
+        return None;
+    }
+    let program = std::env::current_exe();
+    // No display has its socket in a folder that does not exist.
+    let replaced = |program: PathBuf| again(&program).env(SESSION, "/nonexistent").exec();
+    Some(program.map_or_else(|error| error, replaced))
+}
+
+#[cfg(not(all(unix, not(target_os = "macos"))))]
+fn without_driver_messages(_: &Arguments) -> Option<std::io::Error> {
+    None
 }
 
 /// Prints `reason` and plays a round without a window.
 fn play_instead(reason: &str, options: &headless::Options) -> ExitCode {
-    eprintln!(
-        "tamaire: {reason}, so a bot plays a round without a window; choose the round with --headless and --level, --bot, \
+    output::warn(format_args!(
+        "tamaire: {reason}, so a round is played without a window; choose the round with --headless and --level, --bot, \
          --seed or --replay (see --help)"
-    );
+    ));
     headless::play(options)
 }

@@ -21,6 +21,7 @@ pub use device::lend;
 use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa_painter::{PaintError, Pixmap, film, png_of};
 use fuwafuwa_render::ImageError;
+use std::io::Write;
 use studio::Moment;
 pub use studio::Studio;
 use tamaire_play::{AnyRound, Route};
@@ -165,7 +166,9 @@ async fn pass(
 ) -> Result<(), FilmError> {
     *studio = studio.take().or_else(Studio::open);
     if studio.is_none() {
-        eprintln!(
+        // Standard error may be closed.
+        let _ = writeln!(
+            std::io::stderr(),
             "tamaire: no graphics adapter: neither Vulkan nor OpenGL is available, not even in software, so bodies are drawn element by element"
         );
     }

@@ -11,12 +11,14 @@ use clap::builder::PossibleValuesParser;
 use force_log::ForceLog;
 use played::{Played, RATE, of_bot, of_replay, progress};
 use report::{Refusal, Report};
-use std::io::{self, Write};
+use std::error::Error;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use tamaire_play::level::{LevelError, NAMED, NAMED_3D};
-use tamaire_play::{Bot, BotKind, Level, ReplayError};
+use tamaire_play::link::{LinkError, is_link};
+use tamaire_play::{Bot, BotKind, Level, Link, Replay, ReplayError};
 
 /// Exit status for a replay that is not genuine.
 const REFUSED: u8 = 1;
@@ -29,10 +31,10 @@ const REPLAY: &str = "tamaire";
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Without a window")]
 pub struct Options {
-    /// Level, by name (see --list) or by file (a level, a picture or a MagicaVoxel model). Without a window the
-    /// default is classic
+    /// Level, by name (see --list), by file (a level, a picture or a MagicaVoxel model) or by link. Without a window
+    /// the default is classic
     #[arg(long, help_heading = None::<&'static str>, value_name = "NAME or FILE")]
-    pub level: Option<String>,
+    pub level: Option<PathBuf>,
     /// Bot that plays
     #[arg(long, requires = "headless", default_value = "squeeze", value_parser = PossibleValuesParser::new(BotKind::NAMED.map(|(name, _)| name)))]
     pub bot: String,
@@ -64,11 +66,11 @@ pub struct Options {
 }
 
 impl Options {
-    /// Returns the options with the level or replay in `file`.
+    /// Returns the options with the level or replay in `file`, which may be a link.
     pub fn with_file(mut self, file: &Path) -> Self {
         match file.extension() {
             Some(ending) if ending == REPLAY => self.replay = Some(file.into()),
-            _ => self.level = Some(file.to_string_lossy().into()),
+            _ => self.level = Some(file.into()),
         }
         self
     }
@@ -85,6 +87,12 @@ enum HeadlessError {
     File { path: PathBuf, reason: io::Error },
     #[error("cannot make the film: {0}")]
     Film(#[from] FilmError),
+    #[error("{0}")]
+    Link(#[from] LinkError),
+    #[error("--{0} cannot be used with a link to a round, which plays a replay")]
+    Replayed(&'static str),
+    #[error("{0}")]
+    Output(io::Error),
 }
 
 impl HeadlessError {
@@ -96,37 +104,59 @@ impl HeadlessError {
 
 /// Plays a round and prints its report.
 pub fn play(options: &Options) -> ExitCode {
-    let told = match &options.replay {
-        Some(path) => check(path, options),
-        None => try_bot(options),
-    };
-    match told {
-        Ok(text) => {
-            say(&text);
-            ExitCode::SUCCESS
-        }
+    match try_play(options) {
+        Ok(()) => ExitCode::SUCCESS,
         Err(HeadlessError::Replay { path, reason }) => {
             let refusal = Refusal {
                 replay: path.display().to_string(),
                 genuine: false,
                 reason: reason.to_string(),
             };
-            if options.json {
-                say(&report::json(&refusal));
-            } else {
-                eprintln!("tamaire: {}: {}", refusal.replay, refusal.reason);
+            if !options.json {
+                output::warn(format_args!(
+                    "tamaire: {}: {}",
+                    refusal.replay, refusal.reason
+                ));
+                return ExitCode::from(REFUSED);
             }
-            ExitCode::from(REFUSED)
+            match output::print(&report::json(&refusal)) {
+                Ok(()) => ExitCode::from(REFUSED),
+                Err(error) => failed(&error),
+            }
         }
-        Err(trouble) => {
-            eprintln!("tamaire: {trouble}");
-            ExitCode::from(BAD_USAGE)
-        }
+        Err(trouble) => failed(&trouble),
     }
 }
 
-/// Prints the id of each level and its names in English and Japanese.
-pub fn list() {
+fn failed(trouble: &dyn Error) -> ExitCode {
+    output::warn(format_args!("tamaire: {trouble}"));
+    ExitCode::from(BAD_USAGE)
+}
+
+/// Plays a round of a bot or a replay, writes its files and prints its report.
+fn try_play(options: &Options) -> Result<(), HeadlessError> {
+    let told = match (&options.replay, &options.level) {
+        (Some(path), _) => check(path, read_replay(path)?, options),
+        (None, Some(place)) if is_link_argument(place) => {
+            match Link::read(&place.to_string_lossy())? {
+                Link::Level(level) => try_bot(level, options),
+                Link::Round(_) if options.save.is_some() => Err(HeadlessError::Replayed("save")),
+                Link::Round(replay) => check(Path::new("the link"), replay, options),
+            }
+        }
+        (None, Some(place)) => try_bot(level_at(place)?, options),
+        (None, None) => try_bot(Level::open(NAMED[0].0)?, options),
+    }?;
+    output::print(&told).map_err(HeadlessError::Output)
+}
+
+/// Returns whether an argument is a link to a round or a level. A file with this name takes precedence.
+pub fn is_link_argument(argument: &Path) -> bool {
+    is_link(&argument.to_string_lossy()) && !argument.exists()
+}
+
+/// Prints the id of each level and its names in English and Japanese. Returns the exit status of the program.
+pub fn list() -> ExitCode {
     let mut text = String::new();
     for (id, _) in NAMED.iter().chain(&NAMED_3D) {
         let level = Level::open(id).expect("built-in level opens");
@@ -134,15 +164,22 @@ pub fn list() {
         let other = name.ja.as_deref().unwrap_or_default();
         text += &format!("{id:12}  {:20}  {other}\n", name.en);
     }
-    say(&text);
+    print(&text)
+}
+
+/// Prints a text. Returns the exit status of the program.
+pub fn print(text: &str) -> ExitCode {
+    match output::print(text) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => failed(&error),
+    }
 }
 
 /// Lets a bot play a round, and returns the report.
-fn try_bot(options: &Options) -> Result<String, HeadlessError> {
-    let level = options.level.as_deref().unwrap_or(NAMED[0].0);
-    let level = Arc::new(level_at(level)?);
+fn try_bot(level: Level, options: &Options) -> Result<String, HeadlessError> {
+    let level = Arc::new(level);
     for note in level.scene().notes() {
-        eprintln!("tamaire: note: {note}");
+        output::warn(format_args!("tamaire: note: {note}"));
     }
     for path in pictures(options).chain(&options.save) {
         can_be_written(path)?;
@@ -167,8 +204,19 @@ fn try_bot(options: &Options) -> Result<String, HeadlessError> {
     Ok(told)
 }
 
-/// Plays a replay, checks that it is genuine, and returns the report.
-fn check(path: &Path, options: &Options) -> Result<String, HeadlessError> {
+/// Reads a replay from a file.
+fn read_replay(path: &Path) -> Result<Replay, HeadlessError> {
+    replay_in(path).map_err(|error| match error {
+        ReplayError::Unreadable(reason) => HeadlessError::file(path, io::Error::other(reason)),
+        reason => HeadlessError::Replay {
+            path: path.into(),
+            reason,
+        },
+    })
+}
+
+/// Plays a replay, checks that it is genuine, and returns the report. `path` names the replay.
+fn check(path: &Path, replay: Replay, options: &Options) -> Result<String, HeadlessError> {
     for path in pictures(options) {
         can_be_written(path)?;
     }
@@ -176,10 +224,6 @@ fn check(path: &Path, options: &Options) -> Result<String, HeadlessError> {
         path: path.into(),
         reason,
     };
-    let replay = replay_in(path).map_err(|error| match error {
-        ReplayError::Unreadable(reason) => HeadlessError::file(path, io::Error::other(reason)),
-        error => refused(error),
-    })?;
     let mut log = force_log(options)?;
     let played = of_replay(Arc::new(replay), &mut log).map_err(refused)?;
     let by = report::Player::Replay {
@@ -238,7 +282,7 @@ fn finish(log: Option<ForceLog>, options: &Options) -> Result<(), HeadlessError>
     if let (Some(log), Some(path)) = (log, &options.force_log) {
         log.finish()
             .map_err(|reason| HeadlessError::file(path, reason))?;
-        eprintln!("wrote {}", path.display());
+        output::warn(format_args!("wrote {}", path.display()));
     }
     Ok(())
 }
@@ -246,25 +290,13 @@ fn finish(log: Option<ForceLog>, options: &Options) -> Result<(), HeadlessError>
 /// Checks that the folder of `path` exists. Done before the round, so that a long round is not played in
 /// vain.
 fn can_be_written(path: &Path) -> Result<(), HeadlessError> {
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    if folder.is_none_or(Path::is_dir) {
-        return Ok(());
-    }
-    let reason = io::Error::new(io::ErrorKind::NotFound, "the folder does not exist");
-    Err(HeadlessError::file(path, reason))
+    output::check_folder(path).map_err(|reason| HeadlessError::file(path, reason))
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), HeadlessError> {
-    std::fs::write(path, bytes).map_err(|reason| HeadlessError::file(path, reason))?;
-    eprintln!("wrote {}", path.display());
+    output::write(path, bytes).map_err(|reason| HeadlessError::file(path, reason))?;
+    output::warn(format_args!("wrote {}", path.display()));
     Ok(())
-}
-
-/// Prints to stdout. A closed pipe is no error.
-fn say(text: &str) {
-    let _ = io::stdout().write_all(text.as_bytes());
 }
 
 /// Parses a time limit [s].

@@ -4,7 +4,10 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::sync::Arc;
+use tamaire_play::link::address;
 use tamaire_play::replay::VERSION;
+use tamaire_play::{AnyRound, Bot, BotKind, Level};
 use tempfile::TempDir;
 
 /// Level with a small body that is simulated quickly.
@@ -164,9 +167,12 @@ fn round_is_reported_as_json() {
     );
     assert!((told["seconds"].as_f64().unwrap() - ticks as f64 / 60.0).abs() < 1e-3);
     assert_eq!(told["hash"].as_str().unwrap().len(), 16);
-    let [median, worst] =
-        ["median_tick_ms", "worst_tick_ms"].map(|field| told[field].as_f64().unwrap());
-    assert!(0.0 < median && median <= worst, "{median} {worst}");
+    let [p50, p99, worst] =
+        ["p50_tick_ms", "p99_tick_ms", "worst_tick_ms"].map(|field| told[field].as_f64().unwrap());
+    assert!(
+        0.0 < p50 && p50 <= p99 && p99 <= worst,
+        "{p50} {p99} {worst}"
+    );
 }
 
 #[test]
@@ -258,6 +264,25 @@ fn has_adapter() -> bool {
     std::env::var("CI").is_ok_and(|value| value == "1" || value == "true")
 }
 
+/// Without this variable, drivers complain about the display that they look for.
+#[test]
+fn photo_without_a_session_prints_no_errors_of_drivers() {
+    let folder = folder();
+    let line = "--headless --level far.toml --bot idle --seconds 1 --photo it.png";
+    let output = Command::new(env!("CARGO_BIN_EXE_tamaire"))
+        .current_dir(folder.path())
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("XDG_RUNTIME_DIR")
+        .args(line.split_whitespace())
+        .output()
+        .unwrap();
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(!said.contains("XDG_RUNTIME_DIR"), "{said}");
+    assert!(said.ends_with("wrote it.png\n"), "{said}");
+}
+
 #[test]
 fn photo_without_adapter_shows_elements_and_warns() {
     // Graphics API that this operating system does not have.
@@ -306,6 +331,109 @@ fn invalid_arguments_are_refused_with_reason() {
         1,
         &["won.toml", "no replay"],
     );
+}
+
+/// Runs the game with arguments that may contain spaces.
+fn tamaire_args(folder: &Path, arguments: &[&std::ffi::OsStr]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_tamaire"))
+        .current_dir(folder)
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn links_are_played_without_a_window() {
+    let folder = folder();
+    let level = Level::read(
+        "mine.toml",
+        small_level(0.0).as_bytes(),
+        &|_| unreachable!(),
+    )
+    .unwrap();
+    let mut round = AnyRound::new(Arc::new(level.clone()));
+    round.play(&mut Bot::new(BotKind::Idle, 1), 90);
+    let to_level = address("https://example.org/play/", &level.link().unwrap());
+    let to_round = address("https://example.org/play/", &round.replay().link().unwrap());
+    let told = json_of(
+        folder.path(),
+        &format!("--headless {to_level} --json --bot idle"),
+    );
+    assert_eq!(
+        (&told["level"], &told["won"]),
+        (&"mine.toml".into(), &true.into())
+    );
+    let told = json_of(
+        folder.path(),
+        &format!("--headless --level {to_level} --json --bot idle"),
+    );
+    assert_eq!(told["won"], true);
+    let mailed = to_round.replace('#', "%23");
+    for link in [to_round.clone(), format!("<{mailed}>.")] {
+        let told = json_of(folder.path(), &format!("--headless {link} --json"));
+        assert_eq!(told["genuine"], true);
+        assert_eq!(told["hash"], format!("{:016x}", round.hash()));
+    }
+    if cfg!(target_os = "linux") {
+        let output = tamaire(folder.path(), &to_round);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert!(text(&output.stdout).contains("genuine"), "{output:?}");
+    }
+    let cut = &to_level[..to_level.len() - 9];
+    for (link, reason) in [
+        (cut, "the end of this link is missing"),
+        (
+            "https://example.org/",
+            "this is not a link to a round or a level",
+        ),
+    ] {
+        let output = tamaire(folder.path(), &format!("--headless {link}"));
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(
+            said.contains(reason) && !said.contains("level or file"),
+            "{said}"
+        );
+    }
+}
+
+/// Each reason is one for which a file is there, or none: the message names it and no other.
+#[cfg(target_os = "linux")]
+#[test]
+fn file_that_cannot_be_opened_is_refused_with_its_reason() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let folder = folder();
+    fs::create_dir(folder.path().join("folder.toml")).unwrap();
+    std::os::unix::fs::symlink("loop.toml", folder.path().join("loop.toml")).unwrap();
+    fs::write(folder.path().join("picture.toml"), b"\xff\xd8\xff\xe0 JFIF").unwrap();
+    let long = "n".repeat(300);
+    for (name, reason) in [
+        (OsStr::new("missing.toml"), "no level or file"),
+        (OsStr::new("folder.toml"), "found a folder"),
+        (OsStr::new("far.toml/inside.toml"), "Not a directory"),
+        (OsStr::new("loop.toml"), "symbolic link"),
+        (OsStr::new(&long), "File name too long"),
+        (OsStr::new("picture.toml"), "picture.toml"),
+        (OsStr::from_bytes(b"\xff.toml"), "no level or file"),
+    ] {
+        for flag in ["--headless", "--mute"] {
+            let output = tamaire_args(folder.path(), &[OsStr::new(flag), name]);
+            let said = text(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{said}");
+            assert!(said.contains(reason), "{name:?}: {said}");
+            let is_missing = reason == "no level or file";
+            assert_eq!(said.contains("no level or file"), is_missing, "{said}");
+        }
+    }
+    // A file with a name outside of UTF-8 is opened like any other.
+    let odd = OsStr::from_bytes(b"\xff.toml");
+    fs::write(folder.path().join(odd), small_level(0.0)).unwrap();
+    let bot = ["--headless", "--bot", "idle"].map(OsStr::new);
+    let output = tamaire_args(folder.path(), &[&bot[..], &[odd]].concat());
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
 }
 
 #[cfg(unix)]

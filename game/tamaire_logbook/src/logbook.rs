@@ -16,6 +16,7 @@ use rusqlite::{Connection, OptionalExtension};
 use std::fs::{self, File};
 use std::ops::RangeBounds;
 use std::path::{Path, PathBuf};
+use tempfile::TempDir;
 
 /// SQLite file with the visits, rounds and events of a stand.
 ///
@@ -43,6 +44,8 @@ use std::path::{Path, PathBuf};
 pub struct Logbook {
     path: PathBuf,
     connection: Connection,
+    /// Folder of the copy that is read. It must be dropped after the connection, so it stands behind it.
+    _copy: Option<TempDir>,
 }
 
 impl Logbook {
@@ -71,12 +74,15 @@ impl Logbook {
     }
 
     /// Opens a logbook for reading: the file that a stand is writing, or a copy of it together with its
-    /// `-wal` file.
+    /// `-wal` file. Nothing is written beside the file, which may be on a read-only medium.
     ///
     /// # Errors
     /// [`Error::Newer`], [`Error::Damaged`] and [`Error::Unusable`]. The file is neither changed nor renamed.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Ok(Self::from_connection(path, file::read(path)?))
+        let (connection, copy) = file::read(path)?;
+        let mut book = Self::from_connection(path, connection);
+        book._copy = copy;
+        Ok(book)
     }
 
     /// Writes an entry. Writing the same entry again has no effect.
@@ -246,7 +252,11 @@ impl Logbook {
 
     fn from_connection(path: &Path, connection: Connection) -> Self {
         let path = path.into();
-        Self { path, connection }
+        Self {
+            path,
+            connection,
+            _copy: None,
+        }
     }
 
     fn map_error<T>(&self, result: rusqlite::Result<T>) -> Result<T, Error> {

@@ -320,3 +320,44 @@ fn read_accepts_a_copy_taken_during_writing() {
         90
     );
 }
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn read_creates_and_removes_no_file() {
+    let (folder, path) = place();
+    fill(&path);
+    let kept = path.parent().unwrap();
+    let check = |expected: &[&str], rounds: usize| {
+        assert_eq!(names(kept), expected);
+        let before = fs::read(&path).unwrap();
+        let book = Logbook::read(&path).unwrap();
+        assert_eq!(all(&book).unwrap().rounds.len(), rounds);
+        assert_eq!(names(kept), expected);
+        drop(book);
+        assert_eq!(names(kept), expected);
+        assert_eq!(fs::read(&path).unwrap(), before);
+    };
+    check(&["logbook.sqlite"], 90);
+    let both = ["logbook.sqlite", "logbook.sqlite-shm", "logbook.sqlite-wal"];
+    let mut book = open(&path);
+    book.write_all(&entries(MORNING)).unwrap();
+    check(&both, 93);
+    // A copy of the file and of its log, without the shared memory.
+    let log = fs::read(beside(&path, "-wal")).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    drop(book);
+    assert_eq!(names(kept), ["logbook.sqlite"]);
+    fs::write(&path, bytes).unwrap();
+    fs::write(beside(&path, "-wal"), log).unwrap();
+    check(&["logbook.sqlite", "logbook.sqlite-wal"], 93);
+    let error = Logbook::read(folder.path()).unwrap_err().to_string();
+    assert!(error.contains("found a folder"), "{error}");
+}

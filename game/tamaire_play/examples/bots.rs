@@ -186,5 +186,6 @@ fn tell(id: &str, route: Route, endings: &[Ending]) -> io::Result<()> {
 fn median(values: impl Iterator<Item = f32>) -> f32 {
     let mut sorted: Vec<f32> = values.collect();
     sorted.sort_by(f32::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+    let middle = |from: usize| sorted.get(from / 2).copied().unwrap_or(0.0);
+    0.5 * (middle(sorted.len().saturating_sub(1)) + middle(sorted.len()))
 }

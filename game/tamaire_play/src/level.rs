@@ -67,8 +67,16 @@ pub enum LevelError {
         String,
     ),
     /// No built-in level has this name.
-    #[error("no level or file {id:?}, expected one of {known}")]
+    #[error("no built-in level {id:?}, expected one of {known}")]
     Unknown {
+        /// The name that was requested.
+        id: String,
+        /// Names of the built-in levels.
+        known: String,
+    },
+    /// There is neither a built-in level of this name nor such a file.
+    #[error("no level or file {id:?}, expected a file or one of {known}")]
+    Missing {
         /// The name that was requested.
         id: String,
         /// Names of the built-in levels.

@@ -36,8 +36,10 @@ mod digits;
 mod error;
 mod frames;
 mod level;
+mod pasted;
 
 pub use error::{LinkError, MAX_LENGTH};
+pub use pasted::is_link;
 
 use crate::level::{hash_of, stem};
 use crate::replay::{MAX_BYTES, MAX_NAME, VERSION};
@@ -68,22 +70,38 @@ pub enum Link {
 }
 
 impl Link {
-    /// Reads an address or its fragment. The world of a level is built to check it; a round is checked
-    /// against its hashes during playback.
+    /// Reads an address or its fragment, also as mail and chat programs leave them: percent-encoded or in
+    /// quoted-printable, in brackets or quotation marks, with punctuation behind, or with spaces and line
+    /// breaks inside. The world of a level is built to check it; a round is checked against its hashes during
+    /// playback.
     ///
     /// # Errors
     /// [`LinkError`] if the text is no link, is damaged, or has content that cannot be played.
     pub fn read(text: &str) -> Result<Self, LinkError> {
-        let fragment = text.split_once('#').map_or(text, |(_, fragment)| fragment);
-        let fragment = fragment.trim();
-        let (kind, body) = parts(fragment)?;
-        check_length(fragment.len())?;
-        let bytes = unpacked(kind, body)?;
+        let mut problem = LinkError::Other;
+        for fragment in pasted::fragments(text) {
+            match unsealed(&fragment) {
+                Ok((kind, bytes)) => return Self::of(kind, &bytes),
+                Err(error) => problem = error,
+            }
+        }
+        Err(problem)
+    }
+
+    /// Decodes the content of a fragment.
+    fn of(kind: char, bytes: &[u8]) -> Result<Self, LinkError> {
         match kind {
-            ROUND => SentRound::read(&bytes).map(Self::Round),
-            _ => SentLevel::read(&bytes).map(Self::Level),
+            ROUND => SentRound::read(bytes).map(Self::Round),
+            _ => SentLevel::read(bytes).map(Self::Level),
         }
     }
+}
+
+/// Returns the kind and the verified bytes of a fragment.
+fn unsealed(fragment: &str) -> Result<(char, Vec<u8>), LinkError> {
+    let (kind, body) = parts(fragment)?;
+    check_length(fragment.len())?;
+    Ok((kind, unpacked(kind, body)?))
 }
 
 impl Replay {
@@ -353,7 +371,10 @@ mod tests {
         let mut unknown = classic();
         unknown.id = "clasic".into();
         let unknown = refusal(LEVEL, &unknown);
-        assert!(unknown.contains("no level or file \"clasic\""), "{unknown}");
+        assert!(
+            unknown.contains("no built-in level \"clasic\""),
+            "{unknown}"
+        );
     }
 
     #[test]

@@ -2,6 +2,9 @@
 
 use std::fmt::Display;
 
+/// Byte order mark at the start of a table. Without it, Excel reads UTF-8 as the encoding of its country.
+pub const MARK: &str = "\u{feff}";
+
 /// Row of a table as text.
 #[derive(Debug, Default)]
 pub struct CsvRow {

@@ -1,24 +1,23 @@
 //! Files that appear in a folder only when all of them are complete.
 
 use crate::Error;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
-/// Temporary files in a folder. [`Drafts::keep`] renames them to their final names; dropping without it
-/// deletes them.
+/// Files in a folder that are still written under temporary names. [`Drafts::keep`] gives them their final
+/// names; dropping without it deletes them.
 #[derive(Debug)]
 pub struct Drafts {
     folder: PathBuf,
     is_new: bool,
-    all: Vec<(PathBuf, NamedTempFile)>,
+    all: Vec<Draft>,
 }
 
 /// A file being written.
 #[derive(Debug)]
 pub struct Draft {
     path: PathBuf,
-    file: BufWriter<NamedTempFile>,
+    file: output::Draft,
 }
 
 impl Drafts {
@@ -38,7 +37,7 @@ impl Drafts {
             all,
         };
         // Creates a file now, so that an unwritable folder is reported before the work of an hour.
-        draft_in(&drafts.folder)?;
+        drafts.begin("index.html")?;
         Ok(drafts)
     }
 
@@ -48,10 +47,8 @@ impl Drafts {
     /// [`Error::Unwritable`].
     pub fn begin(&self, name: &str) -> Result<Draft, Error> {
         let path = self.folder.join(name);
-        if path.is_dir() {
-            return Err(Error::unwritable(&path, "a folder has this name"));
-        }
-        let file = BufWriter::new(draft_in(&self.folder)?);
+        let file = output::Draft::begin(&path);
+        let file = file.map_err(|error| Error::unwritable(&path, error))?;
         Ok(Draft { path, file })
     }
 
@@ -59,13 +56,10 @@ impl Drafts {
     ///
     /// # Errors
     /// [`Error::Unwritable`].
-    pub fn add(&mut self, draft: Draft) -> Result<(), Error> {
-        let Draft { path, file } = draft;
-        let file = file.into_inner();
-        let file = file.map_err(|error| Error::unwritable(&path, error.into_error()))?;
-        let synced = file.as_file().sync_all();
-        synced.map_err(|error| Error::unwritable(&path, error))?;
-        self.all.push((path, file));
+    pub fn add(&mut self, mut draft: Draft) -> Result<(), Error> {
+        let complete = draft.file.complete();
+        complete.map_err(|error| Error::unwritable(&draft.path, error))?;
+        self.all.push(draft);
         Ok(())
     }
 
@@ -76,9 +70,9 @@ impl Drafts {
     pub fn keep(mut self) -> Result<Vec<PathBuf>, Error> {
         self.is_new = false;
         let mut kept = Vec::new();
-        for (path, file) in std::mem::take(&mut self.all) {
-            let named = file.persist(&path);
-            named.map_err(|error| Error::unwritable(&path, error.error))?;
+        for Draft { path, file } in std::mem::take(&mut self.all) {
+            file.keep()
+                .map_err(|error| Error::unwritable(&path, error))?;
             kept.push(path);
         }
         Ok(kept)
@@ -104,17 +98,4 @@ impl Drop for Drafts {
             let _ = std::fs::remove_dir(&self.folder);
         }
     }
-}
-
-fn draft_in(folder: &Path) -> Result<NamedTempFile, Error> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".draft-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // The mode of an ordinary new file, so that other users can read the report.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let file = builder.tempfile_in(folder);
-    file.map_err(|error| Error::unwritable(folder, error))
 }

@@ -7,7 +7,7 @@ use tamaire_logbook::Id;
 use tamaire_play::Route;
 
 /// Version of the format of `report.json`. It changes when a name is removed or changes its meaning.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 /// All figures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -214,9 +214,10 @@ fn open(files: &[PathBuf]) -> Result<Vec<Logbook>, Error> {
     if files.is_empty() {
         return Err(Error::NoFiles);
     }
-    let open = |file: &PathBuf| match file.exists() {
-        true => Ok(Logbook::read(file)?),
-        false => Err(Error::Missing(file.clone())),
+    let open = |file: &PathBuf| match file.try_exists() {
+        Ok(false) => Err(Error::Missing(file.clone())),
+        // An error means that the file cannot be accessed, which the logbook reports with the reason.
+        _ => Ok(Logbook::read(file)?),
     };
     files.iter().map(open).collect()
 }

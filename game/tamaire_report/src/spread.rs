@@ -1,20 +1,14 @@
 //! Quantiles, histograms and confidence intervals.
 
 use crate::figures::{Bin, Times};
+use output::quantile;
 
 /// Maximum number of bins with an upper limit. One more bin holds all longer times.
 const MOST_BINS: f64 = 15.0;
 /// Possible widths of a bin [s].
 const WIDTHS: [f64; 8] = [2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 300.0, 1800.0];
 
-/// Returns the smallest of the sorted numbers such that at least a share of `share` of all numbers is equal
-/// or smaller. `None` without numbers.
-pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
-    let place = (share * sorted.len() as f64).ceil() as usize;
-    sorted.get(place.saturating_sub(1)).copied()
-}
-
-/// Returns the median, rounded to a thousandth. For an even count, the lower of the two middle values.
+/// Returns the median, rounded to a thousandth. For an even count, the mean of the two middle values.
 pub fn median(mut numbers: Vec<f64>) -> Option<f64> {
     numbers.sort_by(f64::total_cmp);
     quantile(&numbers, 0.5).map(thousandth)
@@ -69,13 +63,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn median_is_the_lower_middle_value() {
+    fn median_of_an_even_count_is_the_mean_of_the_middle() {
         assert_eq!(median(vec![]), None);
         assert_eq!(median(vec![3.0]), Some(3.0));
-        assert_eq!(median(vec![4.0, 1.0]), Some(1.0));
+        assert_eq!(median(vec![4.0, 1.0]), Some(2.5));
         assert_eq!(median(vec![9.0, 1.0, 4.0]), Some(4.0));
-        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.75), Some(3.0));
-        assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.76), Some(4.0));
+        assert_eq!(times(vec![10.0, 30.0]).quantiles.unwrap()[2], 20.0);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! CSV tables for analysis. `docs/report.md` describes their columns.
 
 use crate::Error;
-use crate::csv::CsvRow;
+use crate::csv::{CsvRow, MARK};
 use crate::drafts::{Draft, Drafts};
 use crate::spread::thousandth;
 use crate::story::VisitSummary;
@@ -62,6 +62,7 @@ impl Tables {
     pub fn begin(drafts: &Drafts) -> Result<Self, Error> {
         let begin = |name: &str, columns: &[&str]| {
             let mut draft = drafts.begin(name)?;
+            draft.write(MARK.as_bytes())?;
             draft.write(CsvRow::names(columns).bytes())?;
             Ok::<_, Error>(draft)
         };

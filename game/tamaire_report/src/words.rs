@@ -136,12 +136,14 @@ fn sure(some: u64, all: u64) -> [String; 3] {
     percents.map(|share| format!("{:.0}", 100.0 * share))
 }
 
-/// Returns the hour in which most visits began, and the number of these visits; `None` without a visit.
-fn busiest(figures: &Figures) -> Option<(usize, u64)> {
+/// Returns the hours in which most visits began, and the number of visits in each of them. Several hours are
+/// returned only if they have the same number. `None` without a visit.
+fn busiest(figures: &Figures) -> Option<(Vec<usize>, u64)> {
+    let most = figures.hours.iter().map(|hour| hour.visits).max();
+    let most = most.filter(|most| *most > 0)?;
     let hours = figures.hours.iter().enumerate();
-    let most = hours.rev().max_by_key(|(_, hour)| hour.visits);
-    most.map(|(hour, of_it)| (hour, of_it.visits))
-        .filter(|(_, visits)| *visits > 0)
+    let hours = hours.filter(|(_, of_it)| of_it.visits == most);
+    Some((hours.map(|(hour, _)| hour).collect(), most))
 }
 
 /// Returns the number of rounds that ended in two pieces, and the number that ended in more than 128.
@@ -157,4 +159,37 @@ fn halves_and_dust(figures: &Figures) -> [u64; 2] {
 fn once_and_often(figures: &Figures) -> [u64; 2] {
     let often = figures.rounds_per_visit.iter().skip(2).sum();
     [figures.rounds_per_visit.get(1).copied().unwrap_or(0), often]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::Hour;
+
+    #[test]
+    fn hours_with_equally_many_visits_are_all_named() {
+        let caption = |visits: [u64; 3]| {
+            let mut figures = Figures::default();
+            let hour = |visits| Hour {
+                visits,
+                ..Hour::default()
+            };
+            figures.hours = visits.map(hour).into();
+            [&ENGLISH, &JAPANESE].map(|words| (words.hours.caption)(&figures))
+        };
+        let [english, japanese] = caption([1, 3, 2]);
+        assert!(
+            english.ends_with(" The busiest hour had 3 visits, beginning between 1:00 and 2:00.")
+        );
+        assert!(japanese.ends_with("来場が最も多かったのは1時台で、3組でした。"));
+        let [english, japanese] = caption([2, 1, 2]);
+        assert!(
+            english.ends_with(" The busiest hours, from 0:00 and 2:00, had 2 visits each."),
+            "{english}"
+        );
+        assert!(japanese.ends_with("来場が最も多かったのは0時台と2時台で、それぞれ2組でした。"));
+        let [english, japanese] = caption([0, 0, 0]);
+        assert!(english.ends_with("in which they began."), "{english}");
+        assert!(japanese.ends_with("ラウンドの数です。"));
+    }
 }

@@ -38,7 +38,7 @@ fn invalid_rounds_and_replays_are_refused() {
     };
     check("", "expected LEVEL BOT SEED");
     check("classic shave 1 2", "expected LEVEL BOT SEED");
-    check("cheese shave 1", "no level or file \"cheese\"");
+    check("cheese shave 1", "no built-in level \"cheese\"");
     check("classic cook 1", "no bot \"cook\"");
     check("classic shave x", "the seed of");
     for bytes in [b"".as_slice(), b"\xff", b"version = 1"] {

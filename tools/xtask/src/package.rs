@@ -15,7 +15,7 @@ pub enum Package {
 
 /// Published crates, each with the folders in its package. Crates of the game and crates that only tests use
 /// are marked `publish = false`.
-const CRATES: [(&str, &[&str]); 9] = [
+const CRATES: [(&str, &[&str]); 10] = [
     ("engine/fuwafuwa", &["src", "guide", "examples"]),
     ("engine/fuwafuwa_scenes", &["src", "scenes"]),
     ("engine/fuwafuwa_render", &["src"]),
@@ -23,6 +23,7 @@ const CRATES: [(&str, &[&str]); 9] = [
     ("engine/fuwafuwa_scan", &["src"]),
     ("apps/fuwafuwa_cli", &["src"]),
     ("apps/fuwafuwa_manual", &["src"]),
+    ("apps/fuwafuwa_output", &["src"]),
     ("devices/force_feedback", &["src"]),
     ("devices/sticks", &["src", "examples"]),
 ];

@@ -82,9 +82,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         }
     }
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&outcomes)?);
+        report::print_json(&outcomes)?;
     } else {
-        print!("{}", report::outcome_table(&outcomes));
+        output::print(&report::outcome_table(&outcomes))?;
     }
     let failed = outcomes.iter().any(|outcome| outcome.pass == Some(false));
     Ok(ExitCode::from(u8::from(failed)))

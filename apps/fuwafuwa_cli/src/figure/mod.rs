@@ -57,9 +57,9 @@ impl Which {
 
 /// Draws the selected figures into a folder and prints the names of the files.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    for path in write(arguments.which, &arguments.out)? {
-        println!("{}", path.display());
-    }
+    let written = write(arguments.which, &arguments.out)?;
+    let names = written.iter().map(|path| format!("{}\n", path.display()));
+    output::print(&names.collect::<String>())?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -116,7 +116,7 @@ impl Files<'_> {
 
     fn write(&mut self, name: &str, extension: &str, bytes: &[u8]) -> Result<()> {
         let path = self.folder.join(name).with_extension(extension);
-        std::fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+        output::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
         self.written.push(path);
         Ok(())
     }

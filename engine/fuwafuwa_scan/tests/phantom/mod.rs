@@ -205,6 +205,7 @@ impl File {
             512 => (value as u16).to_le_bytes().to_vec(),
             768 => (value as u32).to_le_bytes().to_vec(),
             1024 => (value as i64).to_le_bytes().to_vec(),
+            1280 => (value as u64).to_le_bytes().to_vec(),
             _ => panic!("datatype {datatype}"),
         };
         if self.is_big_endian {

@@ -31,10 +31,10 @@ pub(super) fn keep_running(file: &Path, mute: bool) -> ExitCode {
         Err(error) => return refused(&error, BAD_USAGE),
     };
     if is_new {
-        eprintln!(
+        output::warn(format_args!(
             "tamaire: created the stand's configuration file {}",
             file.display()
-        );
+        ));
     }
     if !has_display() {
         return refused("a stand requires a display, and none was found", 1);
@@ -64,7 +64,7 @@ pub(super) fn keep_running(file: &Path, mute: bool) -> ExitCode {
 }
 
 fn refused(reason: &str, code: u8) -> ExitCode {
-    eprintln!("tamaire: {reason}");
+    output::warn(format_args!("tamaire: {reason}"));
     ExitCode::from(code)
 }
 
@@ -102,7 +102,7 @@ pub(super) fn rest(file: &Path) -> ExitCode {
 
 fn show(make: impl FnOnce() -> (Game, Box<dyn StandController>) + 'static) -> ExitCode {
     if let Err(error) = keep_awake() {
-        eprintln!("tamaire: {error}");
+        output::warn(format_args!("tamaire: {error}"));
     }
     let viewport = ViewportBuilder::default().with_fullscreen(true);
     let opened = open_game(viewport, move || {

@@ -1,6 +1,6 @@
 //! The subcommand `tamaire report`, which summarizes the logbooks of stands.
 
-use crate::headless::BAD_USAGE;
+use crate::headless::{self, BAD_USAGE};
 use crate::platform::{Kind, Pictures};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -45,6 +45,13 @@ pub(super) struct Options {
     no_clips: bool,
 }
 
+impl Options {
+    /// Whether the report has clips, for which pictures are drawn.
+    pub(super) fn makes_clips(&self) -> bool {
+        !self.no_clips
+    }
+}
+
 /// Writes a report and prints its path.
 pub(super) fn write(options: &Options) -> ExitCode {
     let mut languages = Language::NAMED.into_iter();
@@ -80,14 +87,13 @@ pub(super) fn write(options: &Options) -> ExitCode {
                 refused => format!(", {refused} not counted"),
             };
             let (visits, rounds) = (report.figures.total.visits, report.figures.total.rounds.all);
-            println!(
-                "{}: {visits} visits, {rounds} rounds{refused}",
+            headless::print(&format!(
+                "{}: {visits} visits, {rounds} rounds{refused}\n",
                 report.page.display()
-            );
-            ExitCode::SUCCESS
+            ))
         }
         Err(error) => {
-            eprintln!("tamaire: {error}");
+            output::warn(format_args!("tamaire: {error}"));
             ExitCode::from(BAD_USAGE)
         }
     }

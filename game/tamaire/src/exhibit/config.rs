@@ -6,6 +6,8 @@ use jiff::civil::Time;
 use serde::{Deserialize, Deserializer};
 use std::sync::Arc;
 use tamaire_play::Level;
+use tamaire_play::level::LevelError;
+use tamaire_play::link::is_link;
 use toml_edit::{DocumentMut, Item, Value};
 
 /// Default configuration file, with a comment on each line.
@@ -151,6 +153,10 @@ checked! {
         let open = |id: &String| match Level::open(id) {
             Ok(level) if level.game().basket.is_some() => Ok(Arc::new(level)),
             Ok(_) => Err(format!("expected a level that can be won, found {id:?}")),
+            Err(LevelError::Unknown { known, .. }) => {
+                let found = if is_link(id) { "the link " } else { "" };
+                Err(format!("expected the name of a built-in level ({known}), found {found}{id:?}"))
+            }
             Err(error) => Err(error.to_string()),
         };
         ids.iter().map(open).collect()
@@ -360,8 +366,14 @@ mod tests {
             ),
             (
                 "levels = [\"classic\"]",
-                "levels = [\"nothing\"]",
-                "nothing",
+                "levels = [\"mine.toml\"]",
+                "a built-in level (classic, gravity, neck, twins, core, donut, cat, rubber, biscuit, sandbox, classic-3d, \
+                 hoop, pudding, sandbox-3d), found \"mine.toml\"",
+            ),
+            (
+                "levels = [\"classic\"]",
+                "levels = [\"https://example.org/#l1abcz\"]",
+                "found the link \"https://example.org/#l1abcz\"",
             ),
             ("language = \"japanese\"", "language = \"latin\"", "latin"),
             ("#page = ", "page = \"museum\" #", "address of a page"),

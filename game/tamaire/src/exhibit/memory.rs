@@ -177,7 +177,9 @@ impl Memory {
             // Prints the problem only to the terminal: the recorder itself logs important problems as soon as
             // it can write.
             if let Some(trouble) = &trouble {
-                eprintln!("tamaire: visits are not being logged: {trouble}");
+                output::warn(format_args!(
+                    "tamaire: visits are not being logged: {trouble}"
+                ));
             }
             self.trouble = trouble;
         }

@@ -6,7 +6,7 @@ use crate::settings::Settings;
 use app_shell::direction::to_user;
 use force_feedback::{Ability, Command, ForceController, Output, State, StickMode, Watchdog};
 use fuwafuwa::{DEFAULT_TICK, Vec3};
-use std::fs::File;
+use output::Draft;
 use std::io::{self, Write};
 use std::path::Path;
 use std::time::Duration;
@@ -24,7 +24,8 @@ const COLUMNS: &str = "seconds,row,player,\
 /// during the next tick. The simulated sticks are at the goals of the hands, as real force-feedback sticks
 /// are.
 pub struct ForceLog {
-    file: File,
+    /// The file, under a temporary name until the end.
+    file: Draft,
     /// Rows of the current tick. They are written together, so that the file of a killed run ends with a
     /// complete tick.
     rows: Vec<u8>,
@@ -41,9 +42,9 @@ pub struct ForceLog {
 }
 
 impl ForceLog {
-    /// Creates a file with an empty table.
+    /// Starts a file with an empty table. Until [`ForceLog::finish`], the file has a temporary name.
     pub fn create(path: &Path) -> io::Result<Self> {
-        let mut file = File::create(path)?;
+        let mut file = Draft::begin(path)?;
         writeln!(file, "{COLUMNS}")?;
         Ok(Self {
             file,
@@ -64,14 +65,16 @@ impl ForceLog {
         }
     }
 
-    /// Returns the first write error, if any.
+    /// Gives the file its name, or returns the first write error, if any.
     pub fn finish(self) -> io::Result<()> {
-        self.written
+        self.written?;
+        self.file.keep()
     }
 
     fn write(&mut self, round: &AnyRound) -> io::Result<()> {
         self.collect(round)?;
-        self.file.write_all(&self.rows)
+        self.file.write_all(&self.rows)?;
+        self.file.flush()
     }
 
     fn collect(&mut self, round: &AnyRound) -> io::Result<()> {
@@ -206,7 +209,11 @@ mod tests {
             round.step(InputFrame::default());
             log.note(&round);
             // The table is read before `finish`, as if the program were killed now.
-            let table = std::fs::read_to_string(&path).unwrap();
+            let mut files = std::fs::read_dir(folder.path()).unwrap();
+            let part = files.next().unwrap().unwrap();
+            let name = part.file_name().into_string().unwrap();
+            assert!(name.starts_with("forces.csv.") && name.ends_with(".part"));
+            let table = std::fs::read_to_string(part.path()).unwrap();
             let last = format!(
                 "\n{:.6},substep,0,",
                 f64::from(tick) * f64::from(DEFAULT_TICK)
@@ -216,5 +223,7 @@ mod tests {
             let is_whole = |line: &str| line.matches(',').count() == commas;
             assert!(table.ends_with('\n') && table.lines().all(is_whole));
         }
+        log.finish().unwrap();
+        assert!(path.is_file());
     }
 }

@@ -12,7 +12,7 @@ use super::writer::Writer;
 use crate::records::Records;
 use crate::settings::Settings;
 use crate::words::Language;
-use std::io;
+use std::io::{self, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use tamaire_play::{Level, Replay, ReplayError};
@@ -297,11 +297,13 @@ impl Files {
     pub fn close(&mut self) {
         for news in self.finish() {
             // There is no window any more, so errors go to the terminal.
-            match news {
-                StorageEvent::Failed(reason) => eprintln!("tamaire: cannot save data: {reason}"),
-                StorageEvent::Full => eprintln!("tamaire: cannot save data: the storage is full"),
-                _ => {}
-            }
+            let reason = match news {
+                StorageEvent::Failed(reason) => reason,
+                StorageEvent::Full => "the storage is full".into(),
+                _ => continue,
+            };
+            // Standard error may be closed.
+            let _ = writeln!(std::io::stderr(), "tamaire: cannot save data: {reason}");
         }
     }
 

@@ -50,22 +50,24 @@ mod on_disk {
     use crate::platform::storage::Kind;
     use fuwafuwa_scenes::disk::{read_bytes, reader_in};
     use fuwafuwa_scenes::import::MAX_FILE_BYTES;
+    use std::io::ErrorKind;
     use std::path::Path;
     use tamaire_play::level::LevelError;
+    use tamaire_play::link::is_link;
     use tamaire_play::{Level, Replay, ReplayError};
 
     impl OpenRequest {
         /// Opens a file with a replay, level, picture or model, a built-in level by its name, or a link.
         pub fn at(path: &Path) -> Self {
             let location = path.to_string_lossy();
-            if location.contains('#') && !path.exists() {
+            if is_link(&location) && !path.exists() {
                 return Self::Link(location.into());
             }
             // A file that cannot be read is refused below.
             let bytes = read_bytes(path, MAX_FILE_BYTES).unwrap_or_default();
             match is_replay(&location, &bytes) {
                 true => Self::Replay(location.into(), replay_in(path).map(Box::new)),
-                false => Self::Level(level_at(&location).map(Box::new)),
+                false => Self::Level(level_at(path).map(Box::new)),
             }
         }
     }
@@ -74,15 +76,19 @@ mod on_disk {
     ///
     /// # Errors
     /// [`LevelError`] states the problem.
-    pub fn level_at(location: &str) -> Result<Level, LevelError> {
-        let path = Path::new(location);
-        let known = Level::open(location);
-        if known.is_ok() || !path.exists() {
-            return known;
-        }
-        let unreadable = |reason: String| LevelError::Unreadable(location.into(), reason);
-        let bytes =
-            read_bytes(path, MAX_FILE_BYTES).map_err(|error| unreadable(error.to_string()))?;
+    pub fn level_at(path: &Path) -> Result<Level, LevelError> {
+        let location = path.to_string_lossy();
+        let missing = match Level::open(&location) {
+            Err(LevelError::Unknown { id, known }) => LevelError::Missing { id, known },
+            opened => return opened,
+        };
+        let bytes = match read_bytes(path, MAX_FILE_BYTES) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Err(missing),
+            Err(error) => {
+                return Err(LevelError::Unreadable(location.into(), error.to_string()));
+            }
+        };
         // The id does not contain the folder, so records stay valid when the folder is moved.
         let id = id_of(&path.file_name().unwrap_or_default().to_string_lossy());
         Level::read(

@@ -289,6 +289,9 @@ fn level_error(error: &LevelError) -> String {
             format!("「{id}」は、このままでは あそべません。{field}: {reason}")
         }
         LevelError::Unknown { id, .. } => {
+            format!("「{id}」というステージはありません。")
+        }
+        LevelError::Missing { id, .. } => {
             format!("「{id}」というステージもファイルもありません。")
         }
     }

@@ -10,6 +10,7 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use tempfile::TempDir;
 
 /// A damaged file that was renamed, together with SQLite's files beside it.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,37 +75,65 @@ pub fn attach(path: &Path) -> Result<Connection, Error> {
     Ok(connection)
 }
 
-/// Opens a file for reading.
-pub fn read(path: &Path) -> Result<Connection, Error> {
+/// Opens a file for reading, so that no file is created beside it and none is changed. The folder returned, if
+/// any, holds the copy that the connection reads, and must exist as long as the connection.
+pub fn read(path: &Path) -> Result<(Connection, Option<TempDir>), Error> {
     let found = fs::metadata(path).map_err(|error| unusable(path, &error))?;
+    if !found.is_file() {
+        let reason = "expected a file, found a folder, a pipe or a device";
+        return Err(unusable(path, &io::Error::other(reason)));
+    }
     if found.len() == 0 {
         return Err(damaged(path, "the file is empty"));
     }
-    let connection = connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
-    let connection = match check(path, &connection) {
-        // In a folder without write permission SQLite cannot create the shared-memory file that readers need.
-        // A file without a write-ahead log can be opened as immutable instead, without shared memory.
-        Err(Error::Unusable { .. }) if size(&sidecar_path(path, SIDECAR_SUFFIXES[0])) == 0 => {
-            let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI;
-            let connection = connect(&immutable_uri(path), flags)?;
-            check(path, &connection)?;
-            connection
+    let [log, memory] =
+        [SIDECAR_SUFFIXES[0], SIDECAR_SUFFIXES[1]].map(|suffix| sidecar_path(path, suffix));
+    let (connection, copy) = match (size(&log), memory.exists()) {
+        // A program that has the file open, or was killed, leaves both files beside it.
+        (_, true) => (connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?, None),
+        // No program has the file open, and no log belongs to it.
+        (0, false) => (connect_immutable(path)?, None),
+        // Reading a log requires the shared memory, which SQLite would create beside the file.
+        (_, false) => {
+            let (connection, copy) = connect_copy(path, &log)?;
+            (connection, Some(copy))
         }
-        Err(Error::Unusable { reason, .. }) => {
+    };
+    check(path, &connection).map_err(|error| match error {
+        Error::Unusable { path, reason } => {
             let reason =
                 format!("{reason}; copy the file and those beside it to a writable folder");
-            let path = path.into();
-            return Err(Error::Unusable { path, reason });
+            Error::Unusable { path, reason }
         }
-        other => other.map(|()| connection)?,
-    };
+        other => other,
+    })?;
     match schema::version(&connection).map_err(|error| map_error(path, error))? {
-        VERSION => Ok(connection),
+        VERSION => Ok((connection, copy)),
         _ => Err(damaged(
             path,
             "the logbook has an older version; open it in the game once to update it",
         )),
     }
+}
+
+/// Opens a file to which no program writes, also on a read-only medium: without locks and shared memory.
+fn connect_immutable(path: &Path) -> Result<Connection, Error> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI;
+    connect(&immutable_uri(path), flags)
+}
+
+/// Copies a file and its write-ahead log to a temporary folder, and opens the copy.
+fn connect_copy(path: &Path, log: &Path) -> Result<(Connection, TempDir), Error> {
+    let copied = || {
+        let folder = tempfile::tempdir()?;
+        let copy = folder.path().join("copy.sqlite");
+        fs::copy(path, &copy)?;
+        fs::copy(log, sidecar_path(&copy, SIDECAR_SUFFIXES[0]))?;
+        Ok((folder, copy))
+    };
+    let (folder, copy) = copied().map_err(|error| unusable(path, &error))?;
+    let connection = connect(&copy, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+    Ok((connection, folder))
 }
 
 /// Renames a damaged file, and SQLite's files beside it, to a name with the date.

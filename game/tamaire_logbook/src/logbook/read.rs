@@ -122,8 +122,13 @@ fn median_to_first_win(connection: &Connection, since: i64) -> rusqlite::Result<
     let mut statement = connection.prepare_cached(TO_FIRST_WIN)?;
     let times = statement.query_map([since], |row| row.get::<_, f32>(0))?;
     let mut times = times.collect::<rusqlite::Result<Vec<_>>>()?;
-    let middle = times.len().saturating_sub(1) / 2;
-    Ok((!times.is_empty()).then(|| *times.select_nth_unstable_by(middle, f32::total_cmp).1))
+    times.sort_unstable_by(f32::total_cmp);
+    let middle = |from: usize| times.get(from / 2).copied();
+    // The mean of the two middle times; these are the same time if the count is odd.
+    let low = times.len().checked_sub(1).and_then(middle);
+    Ok(low
+        .zip(middle(times.len()))
+        .map(|(low, high)| 0.5 * (low + high)))
 }
 
 pub fn best(

@@ -53,12 +53,17 @@ pub static ENGLISH: Words = Words {
         axes: ["hour of the day, local time of the stand", "number"],
         caption: |figures| {
             let most = busiest(figures);
-            let most = most.map(|(hour, visits)| {
-                format!(
-                    " The busiest hour had {} visits, beginning between {hour}:00 and {}:00.",
-                    grouped(visits),
+            let most = most.map(|(hours, visits)| match &hours[..] {
+                [hour] => format!(
+                    " The busiest hour had {}, beginning between {hour}:00 and {}:00.",
+                    plural(visits, "visit"),
                     hour + 1
-                )
+                ),
+                hours => format!(
+                    " The busiest hours, from {}, had {} each.",
+                    listed(hours),
+                    plural(visits, "visit")
+                ),
             });
             format!(
                 "Visits and rounds by the hour in which they began.{}",
@@ -247,6 +252,16 @@ fn time(seconds: f64) -> String {
             s.round() as u64 / 60,
             s.round() as u64 % 60
         ),
+    }
+}
+
+/// Lists hours: "9:00, 10:00 and 14:00".
+fn listed(hours: &[usize]) -> String {
+    let hours: Vec<String> = hours.iter().map(|hour| format!("{hour}:00")).collect();
+    match hours.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} and {last}", others.join(", ")),
+        None => String::new(),
     }
 }
 

@@ -46,9 +46,12 @@ pub static JAPANESE: Words = Words {
         title: "時間帯ごとの来場",
         axes: ["時刻（展示場所の時間）［時］", "数"],
         caption: |figures| {
-            let most = busiest(figures).map(|(hour, visits)| {
+            let most = busiest(figures).map(|(hours, visits)| {
+                let each = if hours.len() > 1 { "それぞれ" } else { "" };
+                let hours: Vec<String> = hours.iter().map(|hour| format!("{hour}時台")).collect();
                 format!(
-                    "来場が最も多かったのは{hour}時台で、{}組でした。",
+                    "来場が最も多かったのは{}で、{each}{}組でした。",
+                    hours.join("と"),
                     grouped(visits)
                 )
             });

@@ -33,6 +33,8 @@ fn every_name_in_the_output_is_documented() {
     );
     for table in ["visits.csv", "rounds.csv", "events.csv"] {
         let columns = text(table);
+        // Excel recognises UTF-8 by the byte order mark.
+        let columns = columns.strip_prefix('\u{feff}').unwrap();
         let columns = columns.lines().next().unwrap().split(',');
         found.extend(columns.map(String::from));
     }

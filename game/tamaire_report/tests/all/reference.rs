@@ -75,7 +75,8 @@ fn to_first_win(rounds: &[&Round]) -> Option<f64> {
 
 fn median(mut all: Vec<f64>) -> Option<f64> {
     all.sort_by(f64::total_cmp);
-    (!all.is_empty()).then(|| (1000.0 * all[(all.len() - 1) / 2]).round() / 1000.0)
+    let [low, high] = [all.len().checked_sub(1)? / 2, all.len() / 2];
+    Some((500.0 * (all[low] + all[high])).round() / 1000.0)
 }
 
 fn totals(told: &[&Told]) -> Totals {
@@ -211,7 +212,7 @@ fn compare(figures: &Figures, told: &[Told]) {
         let smaller = times.iter().filter(|time| **time <= found + 0.0006).count() as f64;
         let truly = times.iter().filter(|time| **time < found - 0.0006).count() as f64;
         let needed = share * times.len() as f64;
-        assert!(smaller >= needed && truly < needed, "{share} {found}");
+        assert!(smaller >= needed && truly <= needed, "{share} {found}");
     }
 
     let mut switched = [0, 0];
