@@ -111,7 +111,7 @@ pub(super) fn numbers(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcom
     });
 }
 
-/// Shows the goals of the level, with a filled star for each one reached.
+/// Shows the goals of the level, with a filled star for each one reached and the figure that missed one.
 fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &[Wish]) {
     let most = ui.available_width();
     let lines = wishes.iter().map(|wish| {
@@ -119,7 +119,9 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
             true => ("★", theme.ink),
             false => ("☆", theme.faint),
         };
-        let text = format!("{star} {}", (said.wish)(wish));
+        let missed = (said.near_miss)(wish, outcome);
+        let found = missed.map_or(String::new(), |found| format!("  ({found})"));
+        let text = format!("{star} {}{found}", (said.wish)(wish));
         (fitted(ui.painter(), &text, 20.0, most, ink), ink)
     });
     let lines: Vec<_> = lines.collect();

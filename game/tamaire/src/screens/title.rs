@@ -29,6 +29,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         words(ui, top + vec2(0.0, 78.0), "tamaire", 34.0, theme.ink);
         let options = [
             (said.play, Screen::Levels),
+            (said.two_players, Screen::Together),
             (said.replays, Screen::Replays),
             (said.settings, Screen::Settings),
         ];
