@@ -344,6 +344,21 @@ mod tests {
     }
 
     #[test]
+    fn torn_surface_is_rough_but_stays_near_the_cut() {
+        let mut world = disc(64);
+        let blade = Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0));
+        world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap();
+        let rings = rings(&world);
+        let torn = rings.points.iter().filter(|point| point.fresh == 1.0);
+        let away: Vec<f32> = torn.map(|point| 64.0 * (point.at.x - 0.5)).collect();
+        let mean = away.iter().sum::<f32>() / away.len() as f32;
+        let squares = away.iter().map(|x| (x - mean).powi(2));
+        let deviation = (squares.sum::<f32>() / away.len() as f32).sqrt();
+        assert!(deviation > 0.1, "{deviation} voxels");
+        assert!(away.iter().all(|x| x.abs() < 1.0), "{away:?}");
+    }
+
+    #[test]
     fn crack_faces_coincide_in_a_closed_cut() {
         let mut world = disc(32);
         let whole = total_area(&rings(&world));

@@ -26,6 +26,9 @@ const GRASP: f32 = 1.2;
 /// Gap that a hand keeps from the soft bodies until it is picked up [m].
 const GAP: f32 = 0.03;
 
+/// Angles to the straight way that a gliding hand tries in turn, to get around bodies [rad].
+const AROUND: [f32; 7] = [0.0, 0.5, -0.5, 1.0, -1.0, 1.45, -1.45];
+
 /// Hands at the beginning of a tick, and the bodies around them.
 #[derive(Copy, Clone)]
 pub struct Hands<'a> {
@@ -202,7 +205,8 @@ impl Players {
     /// Returns the next goal of a hand on its way to the position `aim` that a pointer, finger or stick sets.
     ///
     /// When a round begins, the pointer may lie anywhere, also on a body. The hand must not dash there. Until
-    /// the pointer has been at the hand, the hand glides slowly, and it stops before it touches a body. `here`
+    /// the pointer has been at the hand, the hand glides slowly, and it goes around bodies or stops
+    /// before it touches one. `here`
     /// is the target position of the hand, `wanted` its goal.
     fn approach(
         &mut self,
@@ -224,14 +228,19 @@ impl Players {
             self.aims[player] = None;
             return aim;
         }
-        let next = here + way * (GLIDE * seconds / distance).min(1.0);
-        let free = hands.distance_to_bodies;
-        let is_close = free(next) < hands.radius + GAP && free(next) < free(here);
-        if is_close || !next.is_finite() {
-            here
-        } else {
-            next
+        let step = way * (GLIDE * seconds / distance).min(1.0);
+        if !step.is_finite() {
+            return here;
         }
+        let least = (hands.distance_to_bodies)(here).min(hands.radius + GAP);
+        let is_free = |next: &Vec3| {
+            let is_nearer = (aim - next).length() < (aim - here).length();
+            is_nearer && (hands.distance_to_bodies)(*next) >= least
+        };
+        let mut steps = AROUND
+            .iter()
+            .map(|&angle| here + manner.turned(step, angle));
+        steps.find(is_free).unwrap_or(here)
     }
 
     /// Returns the part of the keyboard that moves the hand of a player.

@@ -343,6 +343,15 @@ mod tests {
             60,
         );
         assert_eq!(effects.hint, 1.0);
+        // A player who is stuck sees the hint again for a while.
+        let mut second = round("classic");
+        play(&mut second, &mut effects, away, 60);
+        assert_eq!(effects.hint, 0.0);
+        effects.remind();
+        play(&mut second, &mut effects, away, 120);
+        assert_eq!((effects.hint, effects.is_reminding()), (1.0, true));
+        play(&mut second, &mut effects, away, 600);
+        assert_eq!((effects.hint, effects.is_reminding()), (0.0, false));
     }
 
     #[test]

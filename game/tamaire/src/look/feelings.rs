@@ -454,4 +454,85 @@ mod tests {
         );
         assert_eq!(feeling.mood, Mood::Beam);
     }
+
+    /// Returns the mood after `ticks` ticks with the same input.
+    fn mood<D: Dim>(
+        feeling: &mut Feeling,
+        body: &SoftBody<D>,
+        fate: MoodInput,
+        ticks: usize,
+    ) -> Mood {
+        let fate = MoodInput { tick: LOOK, ..fate };
+        (0..ticks).for_each(|_| feeling.update(body, fate));
+        feeling.mood
+    }
+
+    #[test]
+    fn strained_body_at_rest_is_calm_after_a_second() {
+        let grid = VoxelGrid::<Dim2>::ball(16, 1.0);
+        let (mut world, soft) = alone(grid.expect("the grid is valid"));
+        let body = world.soft_body_mut(soft).unwrap();
+        let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
+        let mut stretch = |world: &mut World<Dim2>, share: f32, velocity: Vec2| {
+            let body = world.soft_body_mut(soft).unwrap();
+            for &id in &ids {
+                let at = body.node_state(id).0 * Vec2::new(share, 1.0 / share);
+                body.set_node_state(id, at, velocity).unwrap();
+            }
+        };
+        stretch(&mut world, 1.2, Vec2::X);
+        let mut feeling = Feeling::new(&world[soft], None);
+        let none = MoodInput::default();
+        assert_eq!(
+            mood(&mut feeling, &world[soft], none, 60),
+            Mood::Wince,
+            "moving"
+        );
+        stretch(&mut world, 1.0, Vec2::ZERO);
+        assert_eq!(mood(&mut feeling, &world[soft], none, 60), Mood::Calm);
+        let pressed = MoodInput {
+            pressed: true,
+            ..none
+        };
+        assert_eq!(mood(&mut feeling, &world[soft], pressed, 60), Mood::Wince);
+        // The strain at rest does not hurt later, either.
+        stretch(&mut world, 1.0, Vec2::X);
+        assert_eq!(mood(&mut feeling, &world[soft], none, 60), Mood::Calm);
+        stretch(&mut world, 1.2, Vec2::X);
+        assert_eq!(mood(&mut feeling, &world[soft], none, 60), Mood::Wince);
+    }
+
+    #[test]
+    fn body_torn_at_its_face_or_halved_stays_sad() {
+        let ball = || alone(VoxelGrid::<Dim2>::ball(16, 1.0).expect("the grid is valid"));
+        let (mut world, soft) = ball();
+        let none = MoodInput::default();
+        let torn_at = |point: Vec3| MoodInput {
+            torn: Some(point),
+            ..none
+        };
+        let after = |feeling: &mut Feeling, fate, body: &SoftBody<Dim2>| {
+            mood(feeling, body, fate, 1);
+            mood(feeling, body, none, 200)
+        };
+        let mut feeling = Feeling::new(&world[soft], None);
+        let (face, size) = (feeling.at, feeling.size);
+        let aside = face + Vec3::new(2.0 * size, 0.0, 0.0);
+        assert_eq!(
+            after(&mut feeling, torn_at(aside), &world[soft]),
+            Mood::Calm
+        );
+        let near = face + Vec3::new(0.5 * size, 0.0, 0.0);
+        assert_eq!(after(&mut feeling, torn_at(near), &world[soft]), Mood::Sad);
+
+        let mut feeling = Feeling::new(&world[soft], None);
+        let blade = Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0));
+        world.cut(soft, &blade).unwrap();
+        assert_eq!(mood(&mut feeling, &world[soft], none, 200), Mood::Sad);
+        let beam = MoodInput {
+            is_in_basket: true,
+            ..none
+        };
+        assert_eq!(mood(&mut feeling, &world[soft], beam, 1), Mood::Beam);
+    }
 }

@@ -10,7 +10,7 @@ use egui::{Color32, FontId, Painter, Pos2, Role, Sense, Stroke, Ui, WidgetInfo, 
 use tamaire_play::{AnyRound, Route, Wish, WishState};
 
 /// Width of an icon with its margins [points at scale 1].
-const ICON: f32 = 34.0;
+const ICON: f32 = 38.0;
 /// Size of the text in the strip [points at scale 1].
 const TEXT: f32 = 19.0;
 
@@ -89,7 +89,7 @@ pub(super) fn strip(row: &mut ChipRow, theme: &Theme, game: &Game) {
         let mark = if is_done { 24.0 } else { 0.0 };
         let rect = row.take(galley.size().x / scale + ICON + 16.0 + mark);
         let painter = row.painter;
-        let middle = rect.left_center() + scale * vec2(0.5 * ICON + 3.0, 0.0);
+        let middle = rect.left_center() + scale * vec2(0.5 * ICON + 2.0, 0.0);
         goal.icon.draw(painter, theme, middle, scale, ink);
         let left = rect.left() + scale * ICON;
         let end = left + galley.size().x;

@@ -19,6 +19,8 @@ const JAR: f32 = 36.0;
 /// Maximum scale of the overlay. In a small window egui's zoom is reduced, so that menus fit. The overlay
 /// needs less room, so it is enlarged again, at most by this factor.
 const MOST: f32 = 1.4;
+/// Minimum width of a window for the overlay [points at scale 1]. A narrower window is not enlarged.
+const NARROWEST: f32 = 375.0;
 
 /// Shows the overlay; returns whether the mouse is over a button.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
@@ -59,7 +61,8 @@ pub(super) fn height(game: &Game, ui: &Ui) -> f32 {
 
 /// Scale of the overlay.
 pub(super) fn scale(game: &Game, ui: &Ui) -> f32 {
-    (game.settings.text_size / ui.ctx().zoom_factor()).clamp(1.0, MOST)
+    let room = (ui.max_rect().width() / NARROWEST).max(1.0);
+    (game.settings.text_size / ui.ctx().zoom_factor()).clamp(1.0, MOST.min(room))
 }
 
 /// Flow layout of a row that wraps at the right edge.

@@ -139,7 +139,7 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
 /// all goals of the current level are reached; otherwise it restarts the level.
 fn buttons(ui: &mut Ui, theme: &Theme, said: &Words, is_reached: bool) -> Option<Act> {
     let mut wanted: Option<Act> = None;
-    let width = 2.0 * 200.0 + GAP;
+    let width = (2.0 * 200.0 + GAP).min(ui.available_width());
     let again: (&str, Act) = (said.play_again, Game::retry);
     let next: (&str, Act) = (said.next, next);
     let (main, other) = if is_reached {

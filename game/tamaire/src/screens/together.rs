@@ -3,7 +3,7 @@
 use super::widgets::{Act, card, column, dim_background, menu, perform, title};
 use crate::game::{Game, Screen};
 use crate::input::{Action, InputSource, KeyboardPart};
-use egui::{Align, RichText, Ui, vec2};
+use egui::{Align, Label, RichText, Ui, vec2};
 
 /// Actions that move a hand, in the order in which their keys are listed.
 const WAYS: [Action; 4] = [Action::Up, Action::Left, Action::Down, Action::Right];
@@ -20,6 +20,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         card(ui, &theme, |ui| {
             title(ui, &theme, said.two_players);
             ui.add_space(10.0);
+            ui.set_max_width(ui.available_width());
             let hands = [Some(0), Some(1), None, None];
             let lines = (said.who_plays)(&names);
             ui.with_layout(egui::Layout::top_down(Align::Min), |ui| {
@@ -30,13 +31,16 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                         let tone = hand.map_or(theme.faint, |hand| theme.hand(hand));
                         let radius = if hand.is_some() { 10.0 } else { 4.0 };
                         ui.painter().circle_filled(rect.center(), radius, tone);
-                        ui.label(RichText::new(line).size(19.0).color(theme.ink));
+                        ui.vertical(|ui| {
+                            let text = RichText::new(line).size(19.0).color(theme.ink);
+                            ui.add(Label::new(text).wrap());
+                        });
                     });
                     ui.add_space(4.0);
                 }
                 if !is_split {
                     let warning = RichText::new(said.no_letter_keys).size(19.0);
-                    ui.label(warning.color(theme.accent));
+                    ui.add(Label::new(warning.color(theme.accent)).wrap());
                 }
             });
             ui.add_space(10.0);

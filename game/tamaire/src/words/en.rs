@@ -289,10 +289,10 @@ pub(super) const WORDS: Words = Words {
     two_players: "Two players",
     who_plays: |[arrows, letters]| {
         [
-            format!("Blue hand: mouse, or {arrows}"),
-            format!("Other hand: {letters}"),
-            "Stick or pad: its Second player button takes the other hand.".into(),
-            "Touch screen: in a 2D round, tap the two dots. A second finger then moves the other hand.".into(),
+            format!("First hand: mouse, or {arrows}"),
+            format!("Second hand: {letters}"),
+            "Stick or pad: its Second player button takes the second hand.".into(),
+            "Touch screen: in a 2D round, tap the two dots. Another finger then moves the second hand.".into(),
         ]
     },
     play_as_two: "Play as two",

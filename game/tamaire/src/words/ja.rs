@@ -262,7 +262,7 @@ pub(super) const WORDS: Words = Words {
     share: |found, needed| format!("{}／{:.0}％", percent_below(found), 100.0 * needed),
     share_in_basket: |found, needed| {
         let found = percent_below(found);
-        format!("かごの中：{:.0}％のうち {found}％", 100.0 * needed)
+        format!("かごの中：{found}％（目標 {:.0}％）", 100.0 * needed)
     },
     near_miss: |wish, outcome| {
         let seconds = wish.seconds.filter(|most| outcome.seconds() > *most);
@@ -288,10 +288,11 @@ pub(super) const WORDS: Words = Words {
     two_players: "ふたりであそぶ",
     who_plays: |[arrows, letters]| {
         [
-            format!("青い手：マウス、または {arrows}"),
-            format!("もうひとつの手：{letters}"),
-            "スティックやパッド：「ふたりで」のボタンで もうひとつの手を動かせます。".into(),
-            "タッチ画面：2Dのステージで 二つの点をおすと、二本目の指で もうひとつの手を動かせます。".into(),
+            format!("ひとつめの手：マウス、または {arrows}"),
+            format!("ふたつめの手：{letters}"),
+            "スティックやパッド：「ふたりで」のボタンで ふたつめの手を動かせます。".into(),
+            "タッチ画面：2Dのステージで 二つの点をおすと、二本目の指で ふたつめの手を動かせます。"
+                .into(),
         ]
     },
     play_as_two: "ふたりで はじめる",

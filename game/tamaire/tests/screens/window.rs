@@ -178,3 +178,14 @@ pub fn touch(window: &mut Window, finger: u64, phase: egui::TouchPhase, pos: egu
     }
     frames(window, 1);
 }
+
+/// Moves the mouse to the first hand, which then follows it.
+pub fn pick_up(window: &mut Window) {
+    let view = window.state().game.bout.view.expect("the world is visible");
+    let at = view.to_screen(hand_targets(window)[0]);
+    window.hover_at(at);
+    frames(window, 1);
+    window.hover_at(at + egui::vec2(1.0, 0.0));
+    frames(window, 1);
+    assert!(game(window).controls.players.is_picked_up(0));
+}

@@ -423,3 +423,30 @@ fn arrows_and_letters_move_two_hands() {
         [-1.0 + side, side],
     );
 }
+
+#[test]
+fn hand_glides_around_body() {
+    // A ball with a radius of 0.4 m lies between the hand and the pointer.
+    let ball = |at: Vec3| (at.length() - 0.4).abs();
+    let devices = Devices {
+        pointer: Some(Vec3::new(0.9, 0.1, 0.0)),
+        ..Devices::default()
+    };
+    let mut players = Players::default();
+    let mut here = HANDS[0];
+    for tick in 0.. {
+        let surroundings = Hands {
+            targets: &[here],
+            radius: 0.1,
+            distance_to_bodies: &ball,
+        };
+        let bindings = Bindings::default();
+        let frame = players.frame(&devices, &bindings, &MANNER, &surroundings, DEFAULT_TICK);
+        if players.is_picked_up(0) {
+            break;
+        }
+        here = frame.goal(0).expect("a goal");
+        assert!(here.length() > 0.4 + 0.1, "{here}");
+        assert!(tick < 240, "the hand stays at {here}");
+    }
+}
