@@ -144,7 +144,12 @@ pub fn drive(game: &mut Game, kind: BotKind, goes_on: impl Fn(&Game) -> bool) {
             game.bout.round().frames().len() < 60 * 60,
             "the round takes longer than a minute"
         );
-        game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
+        let round = game.bout.round();
+        game.controls.devices.pointer = match game.controls.players.is_picked_up(0) {
+            true => round.ask(&mut bot).goal(0),
+            // The player picks up the hand first.
+            false => Some(round.hands()[0].target),
+        };
         game.update(DEFAULT_TICK);
     }
     game.controls.devices.pointer = None;
