@@ -10,6 +10,8 @@ use std::sync::{Arc, Mutex};
 /// Draws 3D worlds in an egui window.
 pub struct SpaceStage {
     state: RenderState,
+    /// Resolution of the drawn worlds, relative to the window; 1 by default.
+    pub resolution: f32,
     /// `None` until the first world is drawn.
     renderer: Option<Arc<Mutex<space::Renderer>>>,
 }
@@ -19,6 +21,7 @@ impl SpaceStage {
     pub fn new(state: &RenderState) -> Self {
         Self {
             state: state.clone(),
+            resolution: 1.0,
             renderer: None,
         }
     }
@@ -40,7 +43,11 @@ impl SpaceStage {
         let new = || Arc::new(Mutex::new(space::Renderer::new(device, *target_format)));
         let shared = self.renderer.get_or_insert_with(new);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        lock(shared).prepare(device, queue, &mut encoder, world, frame, pixels(ui, rect));
+        let size = pixels(ui, rect).map(|side| {
+            let side = (side as f32 * self.resolution).round();
+            (side as u32).max(1)
+        });
+        lock(shared).prepare(device, queue, &mut encoder, world, frame, size);
         queue.submit([encoder.finish()]);
         let paint = PaintCallback(shared.clone(), space::Renderer::paint);
         ui.painter().add(Callback::new_paint_callback(rect, paint));

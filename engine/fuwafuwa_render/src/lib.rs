@@ -57,3 +57,4 @@ pub use gpu::image::{ImageError, ImageStage, image, image_async, pass_into};
 pub use gpu::targets::new_image;
 pub use palette::{Colour, Palette};
 pub use rest::Rest;
+pub use rings::{OutlinePoint, Outlines, Span};

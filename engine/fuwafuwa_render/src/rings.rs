@@ -2,8 +2,8 @@
 //!
 //! A ring of exposed voxel sides becomes a smooth curve in three steps:
 //!
-//! 1. Every point moves by its offset at rest, carried along by the deformation of its voxel. Torn sides have
-//!    no offsets.
+//! 1. Every point moves by its offset at rest, carried along by the deformation of its voxel. The offset of a
+//!    torn side is a roughness, because cracks run along the sides of voxels.
 //! 2. Corners are smoothed, torn ones only a little. The result is the control polygon of a quadratic
 //!    B-spline.
 //! 3. The spline is sampled, more densely around corners.
@@ -113,7 +113,7 @@ impl Outlines {
             let (right, up) = sides([0, 1, 2, 3].map(corner));
             let [from, to] = [0, 1].map(|end| mesh.node(facet.nodes[end]).at);
             let offsets = match facet.is_torn {
-                true => Default::default(),
+                true => [from, to].map(roughness),
                 false => rest.offsets(grid, element.cell.at, [to[0] - from[0], to[1] - from[1]]),
             };
             self.side_from_node[facet.nodes[0]] = self.sides.len() as u32;
@@ -249,6 +249,30 @@ pub fn strain(right: Vec2, up: Vec2, size: f32) -> f32 {
     squared.max(0.0).sqrt()
 }
 
+/// Amplitudes [voxels] and wavelengths [voxels] of the two waves that make torn surfaces rough.
+const ROUGH: [(f32, f32); 2] = [(0.55, 5.0), (0.4, 1.7)];
+
+/// Returns the offset of a torn surface at a lattice point [voxels]. The offset depends only on the position at
+/// rest, so it is the same on both faces of a crack and never changes.
+fn roughness([x, y, _]: [i32; 3]) -> Vec2 {
+    let waves = ROUGH.into_iter().map(|(amplitude, length)| {
+        let at = Vec2::new(x as f32, y as f32) / length;
+        let wave = |seed: i32| 2.0 * noise(at, seed) - 1.0;
+        amplitude * Vec2::new(wave(0), wave(7919))
+    });
+    waves.sum()
+}
+
+/// Returns smooth noise, 0 to 1, that takes pseudo-random values at points with whole coordinates.
+fn noise(at: Vec2, seed: i32) -> f32 {
+    let cell = at.floor();
+    let share = at - cell;
+    let share = share * share * (3.0 - 2.0 * share);
+    let value = |x: i32, y: i32| grain([cell.x as i32 + x + seed, cell.y as i32 + y, 0]);
+    let along = |y: i32| value(0, y) + share.x * (value(1, y) - value(0, y));
+    along(0) + share.y * (along(1) - along(0))
+}
+
 /// Returns a constant pseudo-random value of a lattice point, 0 to 1.
 fn grain([x, y, _]: [i32; 3]) -> f32 {
     let mixed = (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
@@ -317,6 +341,21 @@ mod tests {
             assert!((radius - round).abs() < 0.25 / 64.0, "{radius}");
             assert!(point.strain > 0.5);
         }
+    }
+
+    #[test]
+    fn torn_surface_is_rough_but_stays_near_the_cut() {
+        let mut world = disc(64);
+        let blade = Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0));
+        world.cut(world.nth_soft_body(0).unwrap(), &blade).unwrap();
+        let rings = rings(&world);
+        let torn = rings.points.iter().filter(|point| point.fresh == 1.0);
+        let away: Vec<f32> = torn.map(|point| 64.0 * (point.at.x - 0.5)).collect();
+        let mean = away.iter().sum::<f32>() / away.len() as f32;
+        let squares = away.iter().map(|x| (x - mean).powi(2));
+        let deviation = (squares.sum::<f32>() / away.len() as f32).sqrt();
+        assert!(deviation > 0.1, "{deviation} voxels");
+        assert!(away.iter().all(|x| x.abs() < 1.0), "{away:?}");
     }
 
     #[test]

@@ -398,6 +398,7 @@ impl eframe::App for App {
         fit(&ctx, text_size);
         self.zoom = ctx.zoom_factor();
         let seconds = ctx.input(|input| input.stable_dt).min(0.1);
+        self.game.note_frame(ctx.input(|input| input.unstable_dt));
         self.read_sticks(&ctx, seconds);
         self.read_window(&ctx);
         self.switch
@@ -458,7 +459,7 @@ impl eframe::App for App {
     }
 }
 
-/// Sets the zoom of the interface: `text_size`, or less if the window is too small.
+/// Sets the zoom of the interface.
 fn fit(ctx: &egui::Context, text_size: f32) {
     let zoom = zoom(ctx.content_rect().size() * ctx.zoom_factor(), text_size);
     // The zoom does not change while a mouse button is down, so that a dragged widget keeps its size.
@@ -467,15 +468,22 @@ fn fit(ctx: &egui::Context, text_size: f32) {
     }
 }
 
-/// Returns `text_size`, or the largest zoom step with which every screen fits into `window`. There are only a
-/// few steps, because egui keeps the glyphs of every zoom factor that was ever used.
+/// Returns the zoom for a text size: `text_size` in a window in which every screen fits at zoom 1, and less in
+/// a smaller window, in proportion. Large texts are therefore always as large as promised; what does not fit
+/// any more scrolls. If `text_size` is infinite, returns the largest zoom with which every screen fits. There are
+/// only a few steps, because egui keeps the glyphs of every zoom factor that was ever used.
 fn zoom(window: egui::Vec2, text_size: f32) -> f32 {
     // The tolerance of 1e-4 covers rounding errors: `window` was divided and multiplied by the previous zoom
     // factor.
     let is_tall = window.x < window.y;
     let room = if is_tall { TALL_ROOM } else { ROOM };
     let room = (window / room).min_elem() + 1e-4;
-    text_size.min((STEPS * room).floor() / STEPS).max(0.1)
+    let largest = (STEPS * room).floor() / STEPS;
+    let zoom = match text_size.is_finite() {
+        true => text_size * largest.min(1.0),
+        false => largest,
+    };
+    zoom.max(0.1)
 }
 
 #[cfg(test)]
@@ -494,5 +502,24 @@ mod tests {
         zooms.dedup();
         assert!(zooms.len() < 25 && zooms.is_sorted(), "{zooms:?}");
         assert_eq!(zoom(0.999_999 * ROOM, 1.0), 1.0);
+        assert_eq!(zoom(4.0 * ROOM, 1.0), 1.0);
+        assert_eq!(zoom(1.5 * ROOM, f32::INFINITY), 1.5, "a stand");
+    }
+
+    #[test]
+    fn text_size_is_true_in_every_window() {
+        for window in [
+            [1280.0, 800.0],
+            [1920.0, 1080.0],
+            [704.0, 440.0],
+            [390.0, 844.0],
+        ] {
+            let window = egui::Vec2::from(window);
+            let usual = zoom(window, 1.0);
+            for size in [0.8, 1.0, 1.3, 1.6] {
+                let share = zoom(window, size) / usual;
+                assert!((share - size).abs() < 1e-5, "{window}: {share} of {size}");
+            }
+        }
     }
 }

@@ -231,7 +231,7 @@ fn pixels_of(drawn: &[u8], [width, height]: [u32; 2]) -> Result<Pixmap, PaintErr
 /// Returns the caption of a picture: time and progress of the round.
 fn caption(round: &AnyRound, is_last: bool) -> String {
     let progress = round.progress();
-    let seconds = round.frames().len() as f32 * DEFAULT_TICK;
+    let seconds = round.seconds();
     match (progress.outcome, progress.pieces) {
         (Some(outcome), _) => {
             format!("{} in {:.1} s!", by_route(outcome.route), outcome.seconds())

@@ -3,6 +3,7 @@
 
 mod bout;
 mod controls;
+mod drawing;
 mod ended;
 mod forces;
 mod heard;
@@ -27,6 +28,7 @@ use crate::words::Words;
 use app_shell::{Clock, Forces, Pads, Theme};
 pub use bout::CurrentRound;
 pub use controls::{Controls, ScreenButton};
+use drawing::DrawingWatch;
 use fuwafuwa::DEFAULT_TICK;
 pub use notices::{Notice, Notices};
 pub use public::{EndedRound, PublicMode};
@@ -85,6 +87,7 @@ pub struct Game {
     trouble: Option<String>,
     /// Number of recorded rounds that the title screen has shown.
     attracted: usize,
+    drawing: DrawingWatch,
 }
 
 impl Game {
@@ -123,6 +126,7 @@ impl Game {
             public: None,
             calls: false,
             attracted: 0,
+            drawing: DrawingWatch::default(),
         };
         if settings_damage.is_some() && game.settings.haptics == 0.0 {
             game.notify(game.words().forces_zero.to_string());
@@ -316,6 +320,9 @@ impl Game {
         self.controls.begin(is_space);
         let listed = self.listed(self.bout.round().level());
         self.chosen = listed.unwrap_or(self.chosen);
+        if self.controls.players.second().is_some() && self.bout.lacks_second_hand() {
+            self.notify(self.words().one_hand.to_string());
+        }
         self.go(Screen::Play);
     }
 

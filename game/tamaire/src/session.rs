@@ -122,6 +122,7 @@ impl Session {
         }
     }
 
+    /// Plays the next tick of the round, and lets the ghost follow.
     fn tick(&mut self, wish: &mut impl FnMut(&AnyRound) -> InputFrame) {
         match &mut self.player {
             Player::People(round) => {
@@ -133,12 +134,81 @@ impl Session {
             }
             Player::Replay(_) => {}
         }
+        let clock = self.round().clock_ticks();
         if let Some(ghost) = &mut self.ghost
-            && let Err(error) = ghost.step()
+            && let Err(error) = race(ghost, clock)
         {
             // Removes a ghost that no longer follows its recording.
             self.ghost = None;
             self.complaint = Some(error);
+        }
+    }
+}
+
+/// Maximum number of ticks that a ghost plays during a tick of the player [ticks]. A ghost that waited for its
+/// first push when the player began catches up at this rate.
+const CATCH_UP: usize = 4;
+
+/// Lets a ghost play until its clock shows `clock` ticks, at most [`CATCH_UP`] ticks at a time. As long as the
+/// player has not begun, the ghost waits before its first push.
+fn race(ghost: &mut Playback, clock: u64) -> Result<(), ReplayError> {
+    if clock == 0 && !ghost.is_before_first_push() {
+        return ghost.step();
+    }
+    for _ in 0..CATCH_UP {
+        if ghost.round().clock_ticks() >= clock {
+            break;
+        }
+        ghost.step()?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fuwafuwa::Vec3;
+
+    /// Returns a replay of a round in which the hand moves from tick `idle` on.
+    fn recorded(idle: usize) -> Arc<Replay> {
+        let level = Arc::new(Level::open("classic").expect("the level is built in"));
+        let mut round = AnyRound::new(level);
+        for tick in 0..120 {
+            round.step(match tick < idle {
+                true => InputFrame::default(),
+                false => InputFrame::towards(Vec3::new(-1.4, 0.6, 0.0)),
+            });
+        }
+        Arc::new(round.replay())
+    }
+
+    /// Returns the clock of the player and of the ghost [ticks].
+    fn clocks(session: &Session) -> [u64; 2] {
+        let ghost = session.ghost().expect("the ghost follows its recording");
+        [session.round().clock_ticks(), ghost.clock_ticks()]
+    }
+
+    #[test]
+    fn ghost_waits_for_the_first_push_of_the_player() {
+        for idle in [0, 40, 90] {
+            let replay = recorded(idle);
+            let level = Arc::new(replay.level().unwrap());
+            let ghost = Playback::new(replay).unwrap();
+            let mut session = Session::of_people(level).against(ghost);
+            let play = |session: &mut Session, ticks: usize, frame: InputFrame| {
+                (0..ticks).for_each(|_| session.tick(&mut |_| frame));
+                assert!(session.take_complaint().is_none());
+            };
+            play(&mut session, 60, InputFrame::default());
+            assert_eq!(clocks(&session), [0, 0], "{idle}");
+            // The ghost begins with the player. If it had to wait longer in its own round, it catches up.
+            play(
+                &mut session,
+                20,
+                InputFrame::towards(Vec3::new(-1.3, 0.0, 0.0)),
+            );
+            assert_eq!(clocks(&session), [20, 20], "{idle}");
+            assert_eq!(clocks(&session.again()), [0, 0], "{idle}");
         }
     }
 }

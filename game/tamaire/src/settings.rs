@@ -56,8 +56,47 @@ pub struct Settings {
     pub colour_safe: bool,
     /// Factor on the text size, 0.8 to 1.6; 1 = usual.
     pub text_size: f32,
+    /// Picture quality of the world.
+    pub quality: Quality,
     /// Bindings of keys and buttons.
     pub bindings: Bindings,
+}
+
+/// Picture quality of the world.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quality {
+    /// High, and lowered by steps if drawing is slow.
+    #[default]
+    Automatic,
+    /// Full resolution of the window.
+    High,
+    /// Three quarters of the resolution.
+    Medium,
+    /// Half the resolution, fewer particles and no confetti.
+    Low,
+}
+
+impl Quality {
+    /// All choices, in the order of the settings.
+    pub const ALL: [Self; 4] = [Self::Automatic, Self::High, Self::Medium, Self::Low];
+
+    /// Returns the next lower quality.
+    pub(crate) fn lower(self) -> Self {
+        match self {
+            Self::Automatic | Self::High => Self::Medium,
+            Self::Medium | Self::Low => Self::Low,
+        }
+    }
+
+    /// Resolution of the drawn world, relative to the window.
+    pub(crate) fn resolution(self) -> f32 {
+        match self {
+            Self::Automatic | Self::High => 1.0,
+            Self::Medium => 0.75,
+            Self::Low => 0.5,
+        }
+    }
 }
 
 impl Default for Settings {
@@ -88,6 +127,7 @@ impl Default for Settings {
             reduced_motion: false,
             colour_safe: false,
             text_size: 1.0,
+            quality: Quality::default(),
             bindings: Bindings::default(),
         }
     }

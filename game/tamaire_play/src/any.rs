@@ -2,7 +2,7 @@
 
 use crate::round::Hand;
 use crate::{InputFrame, Level, Progress, Round};
-use fuwafuwa::{Dim2, Dim3, DimVector, Event, StepReport, Vec3};
+use fuwafuwa::{DEFAULT_TICK, Dim2, Dim3, DimVector, Event, StepReport, Vec3};
 use std::sync::Arc;
 
 /// A round in 2D or in 3D.
@@ -48,6 +48,11 @@ impl AnyRound {
         both!(self, round => round.basket().is_some())
     }
 
+    /// See [`Round::distance_to_bodies`].
+    pub fn distance_to_bodies(&self, position: Vec3) -> f32 {
+        both!(self, round => round.distance_to_bodies(DimVector::from_vec3(position)))
+    }
+
     /// See [`Round::start`].
     ///
     /// # Panics
@@ -91,6 +96,19 @@ impl AnyRound {
     /// Returns the number of ticks so far, including those after a win.
     pub fn ticks(&self) -> u64 {
         both!(self, round => round.world().ticks())
+    }
+
+    /// See [`Round::clock_ticks`].
+    pub fn clock_ticks(&self) -> u64 {
+        both!(self, round => round.clock_ticks())
+    }
+
+    /// Returns the time on the clock [s]: the time since the first input that moved a hand, until the win.
+    pub fn seconds(&self) -> f32 {
+        match self.progress().outcome {
+            Some(outcome) => outcome.seconds(),
+            None => self.clock_ticks() as f32 * DEFAULT_TICK,
+        }
     }
 
     /// Returns the hash of the world's current state.

@@ -10,6 +10,9 @@ pub const PLAYERS: usize = 2;
 /// the input that was played. Coordinates range over ±4 m, which contains the arena.
 pub const UNITS_PER_METRE: f32 = 8192.0;
 
+/// Distance of a target from the start of its hand up to which the hand counts as not moved [m].
+const STILL: f32 = 0.002;
+
 /// Coordinates that mark a player without a target in a recorded row. No target has these coordinates.
 const ABSENT: [i16; 3] = [i16::MIN; 3];
 
@@ -53,6 +56,15 @@ impl InputFrame {
             *goal = Some([given[0], given[1], given[2]]).filter(|goal| *goal != ABSENT);
         }
         frame
+    }
+
+    /// Returns whether a target of the frame moves a hand away from `targets`, the targets of the hands at the
+    /// start [m].
+    pub(crate) fn moves_a_hand(&self, targets: &[Vec3]) -> bool {
+        targets.iter().enumerate().any(|(player, &target)| {
+            let goal = self.goals.get(player).and_then(|_| self.goal(player));
+            goal.is_some_and(|goal| (goal - target).length() > STILL)
+        })
     }
 
     /// Returns the target of a player [m].

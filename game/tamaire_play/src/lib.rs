@@ -60,4 +60,4 @@ pub use level::Level;
 pub use link::{Link, LinkError};
 pub use replay::{Playback, Replay, ReplayError};
 pub use round::{Hand, Round};
-pub use rules::{Outcome, Progress};
+pub use rules::{Outcome, Progress, WishState};

@@ -236,7 +236,7 @@ impl SentRound {
             scene,
         };
         replay.check()?;
-        Ok(replay)
+        Ok(replay.timed_from_first_push())
     }
 }
 

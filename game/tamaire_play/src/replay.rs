@@ -1,9 +1,9 @@
 //! Recorded rounds, to be stored, watched, raced and shared.
 
 use crate::level::{LevelError, has_line, stem};
-use crate::round::MAX_TICKS;
+use crate::round::{MAX_TICKS, start_targets};
 use crate::{AnyRound, InputFrame, Level, Outcome, Round};
-use fuwafuwa::Dim;
+use fuwafuwa::{DEFAULT_TICK, Dim};
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{BodyText, shortened};
 use serde::{Deserialize, Serialize};
@@ -91,7 +91,10 @@ impl Replay {
             // Leaves out the folders of the level's file, because they are private.
             level: stem(&level.id).chars().take(MAX_NAME).collect(),
             level_hash: format!("{:016x}", level.hash()),
-            outcome: outcome.filter(|outcome| outcome.ticks == round.frames().len() as u64),
+            // Leaves out a win after the last recorded tick.
+            outcome: outcome.filter(|outcome| {
+                outcome.ticks + round.idle_ticks() == round.frames().len() as u64
+            }),
             hashes: hashes.iter().map(|hash| format!("{hash:016x}")).collect(),
             frames: round.frames().iter().map(InputFrame::row).collect(),
             scene: level.scene().clone(),
@@ -131,7 +134,19 @@ impl Replay {
         }
         let replay: Self = toml::from_str(text).map_err(wrong)?;
         replay.check()?;
-        Ok(replay)
+        Ok(replay.timed_from_first_push())
+    }
+
+    /// Returns the replay with the ticks of its outcome counted from the first input that moves a hand. Older
+    /// versions of the game counted all ticks of the recording.
+    pub(crate) fn timed_from_first_push(mut self) -> Self {
+        let (all, clock) = (self.ticks() as u64, self.clock_ticks() as u64);
+        if let Some(outcome) = &mut self.outcome
+            && outcome.ticks == all
+        {
+            outcome.ticks = clock;
+        }
+        self
     }
 
     /// Checks that the parts of the replay match each other, and that none is too long.
@@ -195,6 +210,24 @@ impl Replay {
         self.frames.len()
     }
 
+    /// Returns the number of ticks before the first input that moves a hand away from its start.
+    pub fn idle_ticks(&self) -> usize {
+        let targets = start_targets(&self.scene);
+        let moves = |tick: &usize| self.frame(*tick).moves_a_hand(&targets);
+        (0..self.ticks()).find(moves).unwrap_or(self.ticks())
+    }
+
+    /// Returns the number of ticks on the clock of the round, which starts with the first input that moves a
+    /// hand.
+    pub fn clock_ticks(&self) -> usize {
+        self.ticks() - self.idle_ticks()
+    }
+
+    /// Returns the time on the clock of the round at the end of the replay [s].
+    pub fn seconds(&self) -> f32 {
+        self.clock_ticks() as f32 * DEFAULT_TICK
+    }
+
     /// Returns the input of a tick. After the last recorded tick, returns an empty frame.
     pub fn frame(&self, tick: usize) -> InputFrame {
         let row = self.frames.get(tick);
@@ -244,6 +277,8 @@ pub struct Playback {
     replay: Arc<Replay>,
     round: AnyRound,
     tick: usize,
+    /// Number of recorded ticks before the first input that moves a hand.
+    idle_ticks: usize,
 }
 
 impl Playback {
@@ -253,11 +288,11 @@ impl Playback {
     /// [`ReplayError`] if the level is invalid, or does not match its hash.
     pub fn new(replay: Arc<Replay>) -> Result<Self, ReplayError> {
         let round = AnyRound::new(Arc::new(replay.level()?));
-        let tick = 0;
         Ok(Self {
+            idle_ticks: replay.idle_ticks(),
             replay,
             round,
-            tick,
+            tick: 0,
         })
     }
 
@@ -267,6 +302,7 @@ impl Playback {
             replay: self.replay.clone(),
             round: AnyRound::new(self.round.level().clone()),
             tick: 0,
+            idle_ticks: self.idle_ticks,
         }
     }
 
@@ -278,6 +314,11 @@ impl Playback {
     /// Returns whether all recorded ticks were played.
     pub fn is_over(&self) -> bool {
         self.tick >= self.replay.ticks()
+    }
+
+    /// Returns whether the next tick is the first one that moves a hand, which starts the clock.
+    pub fn is_before_first_push(&self) -> bool {
+        self.tick == self.idle_ticks
     }
 
     /// Plays the next tick. After the last recorded tick, the world continues without input.
@@ -310,6 +351,8 @@ impl Playback {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::link::Link;
+    use crate::{Bot, BotKind};
     use fuwafuwa::Dim2;
 
     #[test]
@@ -341,6 +384,63 @@ mod tests {
         replay.level = "z".repeat(MAX_NAME + 1);
         let error = replay.text_to_keep().unwrap_err().to_string();
         assert!(error.contains("characters, found"), "{error}");
+    }
+
+    /// Plays a round whose player waits for 90 ticks and then wins.
+    fn won_after_waiting() -> Round<Dim2> {
+        let mut round = Round::<Dim2>::new(Arc::new(Level::open("classic").unwrap()));
+        for _ in 0..90 {
+            round.step(InputFrame::default());
+            assert_eq!(round.clock_ticks(), 0);
+        }
+        // A target at the hand moves nothing.
+        let start = start_targets(round.level().scene())[0];
+        round.step(InputFrame::towards(start));
+        assert_eq!(round.clock_ticks(), 0);
+        let mut bot = Bot::new(BotKind::Squeeze, 1);
+        while round.progress().outcome.is_none() {
+            assert!(round.frames().len() < 1800, "the bot does not win");
+            let frame = bot.frame(&round);
+            round.step(frame);
+        }
+        round
+    }
+
+    #[test]
+    fn clock_starts_with_the_first_push() {
+        let round = won_after_waiting();
+        let outcome = round.progress().outcome.unwrap();
+        let idle = round.idle_ticks();
+        assert!((91..120).contains(&idle), "{idle}");
+        assert_eq!(outcome.ticks + idle, round.frames().len() as u64);
+        let replay = Replay::of(&round);
+        assert_eq!(replay.outcome, Some(outcome));
+        assert_eq!(replay.seconds(), outcome.seconds());
+        assert_eq!(Replay::read(&replay.text()).unwrap(), replay);
+        let Ok(Link::Round(sent)) = Link::read(&replay.link().unwrap()) else {
+            panic!("no round");
+        };
+        assert_eq!(sent.outcome, Some(outcome));
+    }
+
+    #[test]
+    fn replay_that_counted_all_ticks_is_still_genuine() {
+        let round = won_after_waiting();
+        let mut old = Replay::of(&round);
+        let clock = old.outcome.unwrap().ticks;
+        old.outcome.as_mut().unwrap().ticks = old.ticks() as u64;
+        let read = Replay::read(&old.text()).unwrap();
+        assert_eq!(read.outcome.unwrap().ticks, clock);
+        let mut playback = Playback::new(Arc::new(read)).unwrap();
+        while !playback.is_over() {
+            playback.step().unwrap();
+        }
+        // Another number of ticks is a changed result.
+        old.outcome.as_mut().unwrap().ticks = clock + 1;
+        let read = Replay::read(&old.text()).unwrap();
+        let mut playback = Playback::new(Arc::new(read)).unwrap();
+        let mut steps = (0..old.ticks()).map(|_| playback.step());
+        assert!(steps.any(|step| matches!(step, Err(ReplayError::OutcomeDiffers))));
     }
 
     #[test]

@@ -5,6 +5,7 @@ use fuwafuwa::{
     DEFAULT_TICK, Dim, Dim3, DimAngular, DimVector, Reaction, RigidBody, RigidBodyHandle,
     RigidBodyRef, Shape, StepReport, Vec3, World,
 };
+use fuwafuwa_scenes::Scene;
 use std::sync::Arc;
 
 /// Maximum speed of a hand's target [m/s]. A hand much faster than a wave in the body would throw the body
@@ -27,6 +28,8 @@ pub struct Hand {
     pub target: Vec3,
     /// Velocity [m/s].
     pub velocity: Vec3,
+    /// Radius of the largest ball inside the hand [m].
+    pub radius: f32,
     /// Forces on the hand in each substep of the last tick.
     pub reactions: Vec<Reaction<Dim3>>,
 }
@@ -42,6 +45,7 @@ impl<D: Dim> From<RigidBodyRef<'_, D>> for Hand {
             position: hand.position().to_vec3(),
             target: hand.target_position().to_vec3(),
             velocity: hand.velocity().linear.to_vec3(),
+            radius: hand.local_shape().inradius(),
             reactions: hand.reactions().map(in_3d).collect(),
         }
     }
@@ -60,6 +64,11 @@ pub struct Round<D: Dim> {
     players: Vec<RigidBodyHandle>,
     frames: Vec<InputFrame>,
     hashes: Vec<u64>,
+    /// Targets of all hands at the start [m].
+    targets: Vec<Vec3>,
+    /// Number of ticks before the clock started.
+    idle_ticks: u64,
+    has_begun: bool,
 }
 
 impl<D: Dim> Round<D> {
@@ -85,6 +94,9 @@ impl<D: Dim> Round<D> {
             starts,
             frames: Vec::new(),
             hashes: Vec::new(),
+            targets: start_targets(level.scene()),
+            idle_ticks: 0,
+            has_begun: false,
             level,
         }
     }
@@ -92,6 +104,7 @@ impl<D: Dim> Round<D> {
     /// Simulates a tick with the input `frame`.
     pub fn step(&mut self, frame: InputFrame) -> StepReport {
         self.let_players_in(&frame);
+        self.has_begun |= frame.moves_a_hand(&self.targets);
         for player in 0..self.players.len() {
             let goal = D::Vector::from_vec3(self.reachable(player, frame.goal(player)));
             let hand = self.players[player];
@@ -102,8 +115,10 @@ impl<D: Dim> Round<D> {
         if self.progress.outcome.is_some() {
             return report;
         }
+        self.idle_ticks += u64::from(!self.has_begun);
+        let clock = self.clock_ticks();
         let basket = self.basket.as_ref();
-        self.progress.watch(&self.level, basket, &self.world);
+        self.progress.watch(&self.level, basket, &self.world, clock);
         if self.frames.len() < MAX_TICKS {
             self.frames.push(frame);
             if self.frames.len().is_multiple_of(60) || self.progress.outcome.is_some() {
@@ -138,6 +153,18 @@ impl<D: Dim> Round<D> {
         self.basket.as_ref()
     }
 
+    /// Returns the distance from a position to the nearest node of a soft body [m]. `f32::INFINITY` without
+    /// soft bodies.
+    pub fn distance_to_bodies(&self, position: D::Vector) -> f32 {
+        let position = position.to_vec3();
+        let nodes = self.world.soft_bodies().flat_map(|(_, body)| {
+            let nodes = body.mesh().nodes();
+            nodes.map(|(id, _)| body.positions()[id].xyz())
+        });
+        let squares = nodes.map(|node| (node - position).length_squared());
+        squares.fold(f32::INFINITY, f32::min).sqrt()
+    }
+
     /// Returns the start position of a player's hand [m].
     ///
     /// # Panics
@@ -163,6 +190,17 @@ impl<D: Dim> Round<D> {
     /// Returns the input of each tick up to the win, of at most [`MAX_TICKS`] ticks.
     pub fn frames(&self) -> &[InputFrame] {
         &self.frames
+    }
+
+    /// Returns the number of ticks on the clock. The clock starts with the first input that moves a hand away
+    /// from its start, and it goes on after a win.
+    pub fn clock_ticks(&self) -> u64 {
+        self.world.ticks() - self.idle_ticks
+    }
+
+    /// Returns the number of ticks before the clock started.
+    pub(crate) fn idle_ticks(&self) -> u64 {
+        self.idle_ticks
     }
 
     /// Returns the world's hash after every sixtieth recorded tick, and after the tick that won.
@@ -196,6 +234,15 @@ impl<D: Dim> Round<D> {
         }
         let goal = near(target, goal, TOP_SPEED * DEFAULT_TICK);
         near(hand.position().to_vec3(), goal, LEASH)
+    }
+}
+
+/// Returns the targets of all hands of a level at the start [m]. In 2D the third coordinate is zero.
+pub(crate) fn start_targets(scene: &Scene) -> Vec<Vec3> {
+    let targets = scene.hand_targets(0).into_iter().map(Vec3::from);
+    match scene.dim {
+        2 => targets.map(|target| target.with_z(0.0)).collect(),
+        _ => targets.collect(),
     }
 }
 

@@ -51,7 +51,7 @@ pub struct Progress {
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outcome {
-    /// Number of ticks from the start to the win.
+    /// Number of ticks from the first input that moved a hand to the win; 0 if no hand was moved.
     pub ticks: u64,
     /// Route of the win.
     pub route: Route,
@@ -66,7 +66,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Returns the duration of the round [s].
+    /// Returns the duration of the round from the first input that moved a hand [s].
     pub fn seconds(&self) -> f32 {
         self.ticks as f32 * DEFAULT_TICK
     }
@@ -80,7 +80,39 @@ impl Outcome {
     }
 }
 
+/// State of a wish during a round.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum WishState {
+    /// The wish can still be fulfilled.
+    Open,
+    /// The wish is fulfilled, or only the win is missing.
+    Done,
+    /// The wish cannot be fulfilled any more in this round.
+    Missed,
+}
+
 impl Progress {
+    /// Returns the state of a wish of the level, `seconds` [s] after the first push.
+    pub fn state_of(&self, wish: &Wish, seconds: f32) -> WishState {
+        if let Some(outcome) = &self.outcome {
+            return match outcome.fulfils(wish) {
+                true => WishState::Done,
+                false => WishState::Missed,
+            };
+        }
+        let is_late = wish.seconds.is_some_and(|most| seconds > most);
+        let is_torn = wish.kept.is_some_and(|least| self.kept < least)
+            || wish.route == Some(Route::Squeeze) && self.kept < WHOLE;
+        // Only the number of pieces is certain before the win: time passes, and bodies may still tear.
+        let is_certain = wish.seconds.is_none() && wish.kept.is_none() && wish.route.is_none();
+        let has_pieces = wish.pieces.is_some_and(|least| self.pieces >= least);
+        match () {
+            () if is_late || is_torn => WishState::Missed,
+            () if is_certain && has_pieces => WishState::Done,
+            () => WishState::Open,
+        }
+    }
+
     pub(crate) fn of<D: Dim>(world: &World<D>) -> Self {
         let views = views_of(world);
         Self {
@@ -98,12 +130,14 @@ impl Progress {
         }
     }
 
-    /// Updates the progress after a tick.
+    /// Updates the progress after a tick. `clock` is the number of ticks since the first input that moved a
+    /// hand.
     pub(crate) fn watch<D: Dim>(
         &mut self,
         level: &Level,
         basket: Option<&Shape<D>>,
         world: &World<D>,
+        clock: u64,
     ) {
         let views = views_of(world);
         self.kept = greatest(&views) / self.whole;
@@ -132,7 +166,7 @@ impl Progress {
                 .filter(|view| basket.distance(D::Vector::from_vec3(view.centre)).0 > 0.0)
                 .count();
             self.outcome = Some(Outcome {
-                ticks: world.ticks(),
+                ticks: clock,
                 route: self.route(lost),
                 kept: self.kept,
                 inside: self.inside,

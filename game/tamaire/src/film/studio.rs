@@ -146,6 +146,7 @@ fn draw(ui: &Ui, rect: Rect, moment: &Moment, stage: &mut Stage, theme: &Theme) 
         time: moment.time,
         ghost: None,
         hint: Hint::None,
+        resolution: 1.0,
         reduced_motion: false,
     };
     stage.draw(ui, moment.round, &look);

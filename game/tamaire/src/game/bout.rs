@@ -64,17 +64,29 @@ impl CurrentRound {
 
     /// Replaces the round and keeps the camera. `time` is the time since the start of the game [s].
     pub(super) fn begin(&mut self, session: Session, time: f64) {
+        let has_failed = self.is_given_up_for(&session);
         self.session = session;
         self.is_ghost_chosen = false;
         self.opening = Cutaway::begin(time);
         self.effects = Effects::default();
-        self.lesson.begin();
+        if self.lesson.begin(has_failed) {
+            self.effects.remind();
+        }
         // The view refers to the previous round.
         self.view = None;
         self.won = None;
         self.is_noted = false;
         self.is_known_slow = false;
         self.cheered = 0.0;
+    }
+
+    /// Whether the player has pushed but not won, and starts the same level again with `next`.
+    fn is_given_up_for(&self, next: &Session) -> bool {
+        let (before, after) = (self.round(), next.round());
+        let is_same = before.level().is_version_of(after.level());
+        let are_played = self.session.is_played() && next.is_played();
+        let is_won = before.progress().outcome.is_some();
+        are_played && is_same && before.has_basket() && before.clock_ticks() > 0 && !is_won
     }
 
     /// Returns the round in its current state.
@@ -85,6 +97,11 @@ impl CurrentRound {
     /// Whether the round is in 3D and is being played.
     pub fn is_played_in_space(&self) -> bool {
         self.session.is_played() && self.turn().is_some()
+    }
+
+    /// Whether people play a round in a level with a single hand.
+    pub(super) fn lacks_second_hand(&self) -> bool {
+        self.session.is_played() && !self.takes_two()
     }
 
     /// Whether a second player can join.

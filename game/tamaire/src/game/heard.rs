@@ -30,7 +30,7 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
     }
     Soundscape {
         presses,
-        squash: (game.bout.effects.pressure / 1000.0).min(1.0),
+        squash: (game.bout.effects.pressure() / 1000.0).min(1.0),
         hold: (round.progress().held / hold).min(1.0),
         music: true,
         hush: match game.screen() {

@@ -1,4 +1,4 @@
-//! Tutorial: hints for players who are new to 3D levels.
+//! Tutorial: hints that disappear when their action was done and return when the player is stuck.
 
 use fuwafuwa::Vec3;
 
@@ -8,39 +8,91 @@ const MOVED: f32 = 0.2;
 const RAISED: f32 = 0.12;
 /// Rotation of the camera after which the hint about turning counts as followed [rad].
 const TURNED: f32 = 0.2;
-/// Time for which hints are shown in a round [s].
+/// Time for which hints are shown in a round, and again each time the player is stuck [s].
 const LONG: f32 = 45.0;
+/// Time without progress after which a player counts as stuck [s].
+const PATIENCE: f32 = 20.0;
+/// Growth of the share of the mass in the basket that counts as progress.
+const PROGRESS: f32 = 0.02;
+/// Number of rounds of the same level given up one after the other, from which on a player counts as stuck.
+const FAILURES: usize = 2;
 
 /// Progress of the tutorial.
 #[derive(Clone, Debug, Default)]
 pub struct Tutorial {
-    /// Whether the player has tried to move the hand, to raise it, and to turn the camera. The values are
-    /// kept across rounds.
-    tried: [bool; 3],
-    /// Time for which hints have been shown in this round [s].
+    /// Whether the player has moved the hand, raised it, and turned the camera since the hints were last
+    /// needed. The values are kept across rounds.
+    done: [bool; 3],
+    /// Time for which hints have been shown [s].
     seconds: f32,
+    /// Offset of the goal and rotation of the camera from which movements are measured [m, rad].
+    from: (Vec3, f32),
+    /// Largest share of the mass in the basket in this round.
+    best: f32,
+    /// Time since the last progress [s].
+    waiting: f32,
+    /// Number of rounds of the same level that the player has given up.
+    failures: usize,
+}
+
+/// Observation of a frame.
+#[derive(Copy, Clone, Debug, Default)]
+pub(super) struct Seen {
+    /// Offset of the player's goal from the start of the hand [m].
+    pub gone: Vec3,
+    /// Rotation of the camera from its start [rad].
+    pub turned: f32,
+    /// Share of the mass in the basket. `None` in a level without a basket.
+    pub within: Option<f32>,
+    /// Whether the player has begun to push.
+    pub has_begun: bool,
+    /// Duration of the frame [s].
+    pub seconds: f32,
 }
 
 impl Tutorial {
-    /// Restarts the hint time for a new round.
-    pub(super) fn begin(&mut self) {
-        self.seconds = 0.0;
+    /// Prepares for a new round. `has_failed` tells whether the player has given the same level up. Returns
+    /// whether the player counts as stuck.
+    pub(super) fn begin(&mut self, has_failed: bool) -> bool {
+        self.failures = if has_failed { self.failures + 1 } else { 0 };
+        (self.seconds, self.best, self.waiting) = (0.0, 0.0, 0.0);
+        self.from = Default::default();
+        let is_stuck = self.failures >= FAILURES;
+        if is_stuck {
+            self.done = [false; 3];
+        }
+        is_stuck
     }
 
     /// Returns whether to show each of the three hints: move the hand, raise the hand, turn the camera.
     pub(super) fn missing(&self) -> [bool; 3] {
-        self.tried.map(|tried| !tried && self.seconds < LONG)
+        self.done.map(|done| !done && self.seconds < LONG)
     }
 
-    /// Updates the progress after a frame of `seconds` [s]. `gone` is the offset of the player's goal from
-    /// the start of the hand [m], `turned` the rotation of the camera from its start [rad].
-    pub(super) fn see(&mut self, gone: Vec3, turned: f32, seconds: f32) {
+    /// Updates the progress after a frame. Returns whether the player has just been found stuck, so that all
+    /// hints are shown again.
+    pub(super) fn see(&mut self, seen: Seen) -> bool {
+        let gone = seen.gone - self.from.0;
         let along = gone.with_y(0.0).length();
+        let turned = (seen.turned - self.from.1).abs();
         let now = [along > MOVED, gone.y.abs() > RAISED, turned > TURNED];
-        for (tried, now) in self.tried.iter_mut().zip(now) {
-            *tried |= now;
+        for (done, now) in self.done.iter_mut().zip(now) {
+            *done |= now;
         }
-        self.seconds += seconds;
+        self.seconds += seen.seconds;
+        let Some(within) = seen.within.filter(|_| seen.has_begun) else {
+            return false;
+        };
+        self.waiting += seen.seconds;
+        if within > self.best + PROGRESS {
+            (self.best, self.waiting) = (within, 0.0);
+        }
+        let is_stuck = self.waiting >= PATIENCE;
+        if is_stuck {
+            (self.done, self.seconds, self.waiting) = ([false; 3], 0.0, 0.0);
+            self.from = (seen.gone, seen.turned);
+        }
+        is_stuck
     }
 }
 
@@ -48,18 +100,63 @@ impl Tutorial {
 mod tests {
     use super::*;
 
+    fn see(lesson: &mut Tutorial, gone: [f32; 3], turned: f32, seconds: f32) {
+        let gone = Vec3::from(gone);
+        let is_stuck = lesson.see(Seen {
+            gone,
+            turned,
+            seconds,
+            ..Seen::default()
+        });
+        assert!(!is_stuck, "the player has not begun");
+    }
+
     #[test]
-    fn hint_disappears_when_tried_or_after_its_time() {
+    fn hint_disappears_when_done_or_after_its_time() {
         let mut lesson = Tutorial::default();
-        lesson.see(Vec3::new(0.1, 0.05, 0.1), 0.1, 1.0);
+        see(&mut lesson, [0.1, 0.05, 0.1], 0.1, 1.0);
         assert_eq!(lesson.missing(), [true; 3]);
-        lesson.see(Vec3::new(0.0, -0.2, 0.0), 0.0, 1.0);
+        see(&mut lesson, [0.0, -0.2, 0.0], 0.0, 1.0);
         assert_eq!(lesson.missing(), [true, false, true]);
-        lesson.see(Vec3::new(0.2, 0.0, 0.2), 0.0, LONG);
+        see(&mut lesson, [0.2, 0.0, 0.2], 0.0, LONG);
         assert_eq!(lesson.missing(), [false; 3], "the hint time is over");
-        lesson.begin();
+        lesson.begin(false);
         assert_eq!(lesson.missing(), [false, false, true]);
-        lesson.see(Vec3::ZERO, 0.3, 1.0);
+        see(&mut lesson, [0.0; 3], 0.3, 1.0);
         assert_eq!(lesson.missing(), [false; 3]);
+    }
+
+    #[test]
+    fn hints_return_after_twenty_seconds_without_progress() {
+        let mut lesson = Tutorial::default();
+        let mut pass = |seconds: usize, within| {
+            let seen = Seen {
+                gone: Vec3::splat(0.5),
+                turned: 1.0,
+                within,
+                has_begun: true,
+                seconds: 1.0,
+            };
+            let found = (0..seconds).filter(|_| lesson.see(seen)).count();
+            (found, lesson.missing())
+        };
+        assert_eq!(pass(15, Some(0.0)), (0, [false; 3]));
+        assert_eq!(pass(15, Some(0.3)), (0, [false; 3]), "progress");
+        assert_eq!(pass(15, Some(0.31)), (1, [true; 3]), "hardly any progress");
+        assert_eq!(pass(30, None), (0, [true; 3]), "there is no basket");
+        // Movements are measured from here, so each hint stays until its action is done again.
+        see(&mut lesson, [0.5, 0.3, 0.5], 1.0, 1.0);
+        assert_eq!(lesson.missing(), [true, false, true]);
+    }
+
+    #[test]
+    fn hints_return_after_same_failure() {
+        let mut lesson = Tutorial::default();
+        see(&mut lesson, [0.5; 3], 1.0, 1.0);
+        assert!(!lesson.begin(true));
+        assert_eq!(lesson.missing(), [false; 3]);
+        assert!(lesson.begin(true));
+        assert_eq!(lesson.missing(), [true; 3]);
+        assert!(!lesson.begin(false), "another level");
     }
 }

@@ -7,6 +7,8 @@ pub enum Screen {
     Title,
     /// Choice of levels.
     Levels,
+    /// Explanation of how two players play.
+    Together,
     /// Saved rounds.
     Replays,
     /// The round.
@@ -31,7 +33,7 @@ impl Screen {
         use Screen::*;
         match self {
             Title => false,
-            Levels | Replays | Offered => other == Title,
+            Levels | Together | Replays | Offered => other == Title,
             Play => matches!(other, Title | Levels | Replays | Offered),
             Paused | Result => other == Play,
             Settings => matches!(other, Title | Paused),

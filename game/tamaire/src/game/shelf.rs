@@ -75,7 +75,7 @@ impl SavedRounds {
         Ok(RoundDetails {
             level,
             outcome: replay.outcome,
-            seconds: replay.ticks() as f32 * fuwafuwa::DEFAULT_TICK,
+            seconds: replay.seconds(),
         })
     }
 

@@ -1,13 +1,15 @@
-//! Hints for players who are new to 3D levels.
+//! Hints for players who do not know the controls yet, or who are stuck.
 
+use super::lesson::Seen;
 use super::{Game, Screen};
 use crate::input::{Action, InputMethod};
 use fuwafuwa::Vec3;
 
 impl Game {
     /// Returns the hints about moving the hand, raising it and turning the camera, each with whether to show
-    /// it. The texts suit the input method used last. There are no hints in 2D, outside of a round, and for
-    /// players who have won a 3D level. With scanning on, the only hint explains the switch.
+    /// it. A hint disappears when its action was done, and returns when the player is stuck. The texts suit
+    /// the input method used last. There are no hints in 2D and outside of a round. With scanning on, the only
+    /// hint explains the switch.
     pub fn lesson(&self) -> Vec<(String, bool)> {
         if self.settings.scanning.is_on() {
             let is_played = self.screen() == Screen::Play && self.bout.session.is_played();
@@ -16,7 +18,7 @@ impl Game {
         }
         // In the element view the mouse wheel cuts bodies open instead of raising the hand, so the hints
         // would be wrong.
-        if !self.is_played_in_space() || self.has_won_in_space() || self.bout.elements.is_some() {
+        if !self.is_played_in_space() || self.bout.elements.is_some() {
             return Vec::new();
         }
         let on_stick = self.controls.means == InputMethod::Stick;
@@ -33,7 +35,7 @@ impl Game {
 
     /// Updates the tutorial with the movements of this frame.
     pub(super) fn learn(&mut self, seconds: f32) {
-        if !self.is_played_in_space() {
+        if self.screen() != Screen::Play || !self.bout.session.is_played() {
             return;
         }
         let round = self.bout.round();
@@ -41,15 +43,19 @@ impl Game {
             Some(wanted) => wanted - round.start(0),
             None => Vec3::ZERO,
         };
+        let progress = round.progress();
+        let is_open = round.has_basket() && progress.outcome.is_none();
         let [right, up] = self.bout.camera.orbit_angles();
-        self.bout
-            .lesson
-            .see(gone, right.abs().max(up.abs()), seconds);
-    }
-
-    fn has_won_in_space(&self) -> bool {
-        let mut levels = self.levels.iter();
-        levels.any(|level| level.scene().dim == 3 && self.records.of(&level.id).is_some())
+        let is_stuck = self.bout.lesson.see(Seen {
+            gone,
+            turned: right.abs().max(up.abs()),
+            within: is_open.then_some(progress.within),
+            has_begun: round.clock_ticks() > 0,
+            seconds,
+        });
+        if is_stuck {
+            self.bout.effects.remind();
+        }
     }
 
     fn is_played_in_space(&self) -> bool {

@@ -2,7 +2,8 @@
 
 use super::{Controls, CurrentRound, Game, Screen, heard};
 use crate::haptics;
-use crate::input::InputMapping;
+use crate::input::{Hands, InputMapping};
+use crate::settings::Quality;
 use fuwafuwa::{DEFAULT_TICK, Vec3};
 use tamaire_play::{InputFrame, PLAYERS};
 use tamaire_sound::Cue;
@@ -71,7 +72,7 @@ impl Game {
             arena: self.bout.round().level().arena(),
             turn: self.bout.turn(),
         };
-        let still = self.settings.reduced_motion;
+        let still = self.settings.reduced_motion || self.quality() == Quality::Low;
         // Keys and sticks move the hand only during a round; in menus they move the focus. After a win, input
         // is ignored so that the body is not torn any more.
         let is_won = self.bout.round().progress().outcome.is_some();
@@ -111,7 +112,12 @@ impl Game {
                     *target = hand.target;
                 }
                 let bindings = &settings.bindings;
-                let frame = players.frame(devices, bindings, &manner, &targets, DEFAULT_TICK);
+                let hands = Hands {
+                    targets: &targets,
+                    radius: round.hands()[0].radius,
+                    distance_to_bodies: &|position| round.distance_to_bodies(position),
+                };
+                let frame = players.frame(devices, bindings, &manner, &hands, DEFAULT_TICK);
                 // Clears the height by which the player has scrolled. Scrolling then counts once, however
                 // many ticks are played in this frame.
                 devices.lift = 0.0;

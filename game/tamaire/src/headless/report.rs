@@ -1,6 +1,6 @@
 //! Report on a round, as text and as JSON.
 
-use super::played::{Played, RATE};
+use super::played::Played;
 use crate::film::by_route;
 use serde::Serialize;
 use std::fmt;
@@ -20,7 +20,7 @@ pub struct Report {
     by: Player,
     won: bool,
     route: Option<Route>,
-    /// Game time until the round was won or given up [s].
+    /// Game time from the first push until the round was won or given up [s].
     seconds: f32,
     ticks: u64,
     /// Sum of the masses of each body's largest piece, relative to this sum at the start.
@@ -80,7 +80,7 @@ impl Report {
             by,
             won: outcome.is_some(),
             route: outcome.map(|outcome| outcome.route),
-            seconds: round.frames().len() as f32 / RATE,
+            seconds: round.seconds(),
             ticks: round.frames().len() as u64,
             kept: progress.kept,
             // Turns -0, the sum of an empty iterator, into 0.

@@ -1,6 +1,6 @@
 //! Key and button bindings.
 
-use super::Action;
+use super::{Action, KeyboardPart};
 use egui::Key;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -155,6 +155,22 @@ impl Bindings {
             .filter_map(first)
             .collect::<Vec<_>>()
             .join(" ")
+    }
+
+    /// Whether an action has a key in a part of the keyboard.
+    pub fn has_key_in(&self, action: Action, part: KeyboardPart) -> bool {
+        let mut keys = self.keys.get(&action).into_iter().flatten();
+        keys.any(|&key| part.has(key))
+    }
+
+    /// Display names of the first key of each action in a part of the keyboard.
+    pub fn names_in(&self, actions: &[Action], part: KeyboardPart) -> String {
+        let first = |action| {
+            let mut keys = self.keys.get(action).into_iter().flatten();
+            keys.find(|&&key| part.has(key)).map(|&key| name_of(key))
+        };
+        let names = actions.iter().filter_map(first);
+        names.collect::<Vec<_>>().join(" ")
     }
 
     /// Binds a key to an action and removes its old binding. An action that loses its only key gets the old

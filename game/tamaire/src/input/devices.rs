@@ -18,10 +18,48 @@ pub enum InputSource {
     Pointer,
     /// Second finger.
     Finger,
-    /// Keyboard.
+    /// Whole keyboard.
     Keys,
+    /// All keys except the arrow keys and the block above them.
+    LetterKeys,
     /// Stick or pad.
     Stick(DeviceId),
+}
+
+/// Part of the keyboard that a player uses.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum KeyboardPart {
+    /// All keys.
+    Whole,
+    /// The arrow keys and the block above them.
+    Arrows,
+    /// All keys except those of [`KeyboardPart::Arrows`].
+    Letters,
+}
+
+impl KeyboardPart {
+    /// Whether a key belongs to this part.
+    pub fn has(self, key: Key) -> bool {
+        use Key::*;
+        let is_arrow = matches!(
+            key,
+            ArrowUp
+                | ArrowDown
+                | ArrowLeft
+                | ArrowRight
+                | Home
+                | End
+                | PageUp
+                | PageDown
+                | Insert
+                | Delete
+        );
+        match self {
+            Self::Whole => true,
+            Self::Arrows => is_arrow,
+            Self::Letters => !is_arrow,
+        }
+    }
 }
 
 /// Input of all devices at a moment.
@@ -82,15 +120,21 @@ impl Devices {
         (keys + sticks.sum::<f32>()).clamp(-1.0, 1.0)
     }
 
-    /// Whether a key with this action is held.
-    pub(super) fn holds_key(&self, bindings: &Bindings, action: Action) -> bool {
-        let means = |&key| bindings.of_key(key) == Some(action);
+    /// Whether a key of a part of the keyboard with this action is held.
+    pub(super) fn holds_key(
+        &self,
+        bindings: &Bindings,
+        part: KeyboardPart,
+        action: Action,
+    ) -> bool {
+        let means = |&key: &Key| part.has(key) && bindings.of_key(key) == Some(action);
         self.keys.iter().any(means)
     }
 
     /// Whether a key or screen button with this action is held.
     fn holds(&self, bindings: &Bindings, action: Action) -> bool {
-        self.pressed.contains(&action) || self.holds_key(bindings, action)
+        let is_held = self.holds_key(bindings, KeyboardPart::Whole, action);
+        self.pressed.contains(&action) || is_held
     }
 }
 

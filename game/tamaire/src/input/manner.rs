@@ -3,6 +3,7 @@
 use app_shell::direction::to_world;
 use egui::Vec2;
 use fuwafuwa::Vec3;
+use fuwafuwa::glam::Quat;
 
 /// Interpretation of a player's input.
 #[derive(Copy, Clone, Debug)]
@@ -28,6 +29,14 @@ impl InputMapping {
             position[axis] = position[axis].clamp(low[axis], high[axis]);
         }
         position
+    }
+
+    /// Rotates a vector in the plane in which hands move: in 3D along the floor.
+    pub(super) fn turned(&self, vector: Vec3, angle: f32) -> Vec3 {
+        match self.turn {
+            Some(_) => Quat::from_rotation_y(angle) * vector,
+            None => Quat::from_rotation_z(angle) * vector,
+        }
     }
 
     /// Converts a stick position to a position in the arena [m]. In 3D the height of the result is `height`

@@ -8,10 +8,10 @@ mod players;
 mod scan;
 
 pub use bindings::{Bindings, PadKey};
-pub use devices::{Devices, InputSource};
+pub use devices::{Devices, InputSource, KeyboardPart};
 pub use latch::StickyKeys;
 pub use manner::InputMapping;
-pub use players::Players;
+pub use players::{Hands, Players};
 pub use scan::{Scan, ScanAction, Scanning};
 
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! Assignment of devices to players, and the goals of their hands.
 
-use super::devices::{DEAD, RIM, direction, held_on, opposed, rise_of};
+use super::devices::{DEAD, KeyboardPart, RIM, direction, held_on, opposed, rise_of};
 use super::{Action, Bindings, Devices, InputMapping, InputSource, ScanAction};
 use app_shell::direction::to_world;
 use egui::Vec2;
@@ -19,11 +19,37 @@ const SWITCHED: f32 = 0.4;
 /// Speed of raising and lowering the hand's goal in 3D at default sensitivity [m/s].
 const RISE: f32 = 1.2;
 
+/// Speed at which a hand that was not picked up yet moves towards the pointer [m/s].
+const GLIDE: f32 = 1.2;
+/// Distance between hand and pointer up to which the pointer picks the hand up [radii of the hand].
+const GRASP: f32 = 1.2;
+/// Gap that a hand keeps from the soft bodies until it is picked up [m].
+const GAP: f32 = 0.03;
+
+/// Angles to the straight way that a gliding hand tries in turn, to get around bodies [rad].
+const AROUND: [f32; 7] = [0.0, 0.5, -0.5, 1.0, -1.0, 1.45, -1.45];
+
+/// Hands at the beginning of a tick, and the bodies around them.
+#[derive(Copy, Clone)]
+pub struct Hands<'a> {
+    /// Target position of each hand, or the start position of a hand that has not joined yet [m].
+    pub targets: &'a [Vec3],
+    /// Radius of a hand [m].
+    pub radius: f32,
+    /// Distance from a position to the nearest soft body [m].
+    pub distance_to_bodies: &'a dyn Fn(Vec3) -> f32,
+}
+
 /// Players and the goals of their hands.
 #[derive(Clone, Debug, Default)]
 pub struct Players {
     /// Input source of the second player. `None` = one player. The first player has all other devices.
     second: Option<InputSource>,
+    /// Whether each player's hand was picked up in this round: a pointer, finger or stick that sets positions
+    /// has been at the hand. Before that, the hand only glides towards the position.
+    is_picked_up: [bool; PLAYERS],
+    /// Position to which a hand that was not picked up yet glides [m].
+    aims: [Option<Vec3>; PLAYERS],
     /// Goal that each player requests [m]. The hand and its target position may be far from this goal, for
     /// example behind an obstacle.
     goals: [Option<Vec3>; PLAYERS],
@@ -74,14 +100,21 @@ impl Players {
         self.goals[player]
     }
 
+    /// Whether the hand of a player follows the pointer: the pointer has been at the hand in this round.
+    pub fn is_picked_up(&self, player: usize) -> bool {
+        self.is_picked_up[player]
+    }
+
     /// Adds a second player who uses this device. If the second player already uses it, that player leaves.
     pub fn join(&mut self, seat: InputSource) {
         self.second = match self.second {
             Some(taken) if taken == seat => None,
+            Some(InputSource::LetterKeys) if seat == InputSource::Keys => None,
             // If the second player joins with the keyboard, the mouse stays with the first player.
             _ => Some(seat),
         };
         self.goals[1] = None;
+        (self.aims[1], self.is_picked_up[1]) = (None, false);
         self.used = [self.used[0].filter(|used| *used != seat), self.second];
     }
 
@@ -95,14 +128,13 @@ impl Players {
         };
     }
 
-    /// Returns the goals of the hands for the next tick, which is `seconds` long. `hands` holds the current
-    /// target position of each hand, or the start position of a hand that has not joined yet [m].
+    /// Returns the goals of the hands for the next tick, which is `seconds` long.
     pub fn frame(
         &mut self,
         devices: &Devices,
         bindings: &Bindings,
         manner: &InputMapping,
-        hands: &[Vec3],
+        hands: &Hands,
         seconds: f32,
     ) -> InputFrame {
         if let Some(InputSource::Stick(id)) = self.second
@@ -120,10 +152,12 @@ impl Players {
                 continue;
             }
             // In a level with a single hand, the second player is ignored.
-            let Some(&here) = hands.get(player) else {
+            let Some(&here) = hands.targets.get(player) else {
                 continue;
             };
-            self.move_goal(player, devices, bindings, manner, here, seconds);
+            self.rested[player] += seconds;
+            let asked = self.asked(player, devices, bindings, manner, here);
+            self.move_goal(player, asked, manner, here, hands, seconds);
             if let Some(goal) = self.goals[player].or((player == 1).then_some(here)) {
                 frame = frame.with(player, goal);
             }
@@ -134,16 +168,20 @@ impl Players {
     fn move_goal(
         &mut self,
         player: usize,
-        devices: &Devices,
-        bindings: &Bindings,
+        asked: Asked,
         manner: &InputMapping,
         here: Vec3,
+        hands: &Hands,
         seconds: f32,
     ) {
-        self.rested[player] += seconds;
         let wanted = self.goals[player].unwrap_or(here);
-        let asked = self.asked(player, devices, bindings, manner, wanted.y);
-        let mut goal = asked.position.or(self.goals[player]);
+        if asked.position.is_some() || asked.lean != Vec2::ZERO {
+            self.aims[player] = asked.position;
+        }
+        let mut goal = match self.aims[player] {
+            Some(aim) => Some(self.approach(player, aim, [here, wanted], manner, hands, seconds)),
+            None => self.goals[player],
+        };
         if asked.lean != Vec2::ZERO {
             // Starts from the hand's current target position instead of the requested goal, so that pushing
             // against an obstacle does not accumulate.
@@ -164,23 +202,76 @@ impl Players {
         self.goals[player] = goal;
     }
 
-    /// Collects the requests of a player's devices. `height` is the height that the player wants [m].
+    /// Returns the next goal of a hand on its way to the position `aim` that a pointer, finger or stick sets.
+    ///
+    /// When a round begins, the pointer may lie anywhere, also on a body. The hand must not dash there. Until
+    /// the pointer has been at the hand, the hand glides slowly, and it goes around bodies or stops
+    /// before it touches one. `here`
+    /// is the target position of the hand, `wanted` its goal.
+    fn approach(
+        &mut self,
+        player: usize,
+        aim: Vec3,
+        [here, wanted]: [Vec3; 2],
+        manner: &InputMapping,
+        hands: &Hands,
+        seconds: f32,
+    ) -> Vec3 {
+        let (mut way, mut here) = (aim - here, here);
+        if manner.turn.is_some() {
+            // In 3D a pointer sets the position along the floor. The height is set separately.
+            (way.y, here.y) = (0.0, wanted.y);
+        }
+        let distance = way.length();
+        if self.is_picked_up[player] || distance <= GRASP * hands.radius {
+            self.is_picked_up[player] = true;
+            self.aims[player] = None;
+            return aim;
+        }
+        let step = way * (GLIDE * seconds / distance).min(1.0);
+        if !step.is_finite() {
+            return here;
+        }
+        let least = (hands.distance_to_bodies)(here).min(hands.radius + GAP);
+        let is_free = |next: &Vec3| {
+            let is_nearer = (aim - next).length() < (aim - here).length();
+            is_nearer && (hands.distance_to_bodies)(*next) >= least
+        };
+        let mut steps = AROUND
+            .iter()
+            .map(|&angle| here + manner.turned(step, angle));
+        steps.find(is_free).unwrap_or(here)
+    }
+
+    /// Returns the part of the keyboard that moves the hand of a player.
+    fn keyboard_of(&self, player: usize) -> Option<KeyboardPart> {
+        match (player, self.second) {
+            (0, Some(InputSource::Keys)) => None,
+            (0, Some(InputSource::LetterKeys)) => Some(KeyboardPart::Arrows),
+            (0, _) | (1, Some(InputSource::Keys)) => Some(KeyboardPart::Whole),
+            (1, Some(InputSource::LetterKeys)) => Some(KeyboardPart::Letters),
+            _ => None,
+        }
+    }
+
+    /// Collects the requests of a player's devices. `here` is the target position of the player's hand [m].
     fn asked(
         &mut self,
         player: usize,
         devices: &Devices,
         bindings: &Bindings,
         manner: &InputMapping,
-        height: f32,
+        here: Vec3,
     ) -> Asked {
+        let height = self.goals[player].unwrap_or(here).y;
         let holds = |seat: InputSource| match player {
             0 => self.second != Some(seat),
             _ => self.second == Some(seat),
         };
         let rises = if manner.turn.is_some() { 1.0 } else { 0.0 };
         let mut asked = Asked::default();
-        if holds(InputSource::Keys) {
-            let held = |action| devices.holds_key(bindings, action);
+        if let Some(part) = self.keyboard_of(player) {
+            let held = |action| devices.holds_key(bindings, part, action);
             asked.lean = direction(held);
             asked.lift = rises * opposed(held, Action::Raise, Action::Lower);
             if asked.lean != Vec2::ZERO || asked.lift != 0.0 {

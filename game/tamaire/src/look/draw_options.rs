@@ -27,6 +27,8 @@ pub struct DrawOptions<'a> {
     pub hint: Hint,
     /// Reduced motion.
     pub reduced_motion: bool,
+    /// Resolution of the drawn world, relative to the screen.
+    pub resolution: f32,
 }
 
 /// Hint for a player who has not moved the hand yet.

@@ -17,6 +17,8 @@ const LOOKED_UP: usize = 8;
 const HURTS: f32 = 350.0;
 /// Distance of the hand from its start position at which the start hint fades [m].
 const MOVED: f32 = 0.12;
+/// Time for which the start hint is shown again to a player who is stuck [s].
+const REMINDER: f32 = 8.0;
 /// Air drag of particles [1/s].
 const DRAG: f32 = 1.5;
 /// Duration that is multiplied by gravity to get the upward velocity of new particles [s].
@@ -66,13 +68,15 @@ pub struct Effects {
     pub confetti: Confetti,
     /// Feeling of each body (expression and position of its drawn face), in the order of the world's bodies.
     pub feelings: Vec<Feeling>,
-    /// Total contact force between hands and bodies [N], smoothed over some ticks.
-    pub pressure: f32,
+    /// Contact force between hands and each body [N], smoothed over some ticks.
+    pressures: Vec<f32>,
     /// Opacity of the start hint, 0 to 1.
     pub hint: f32,
     /// Position of the first hand at the start [m].
     start: Option<Vec3>,
     has_moved: bool,
+    /// Time for which the start hint is shown again [s].
+    reminder: f32,
     has_won: bool,
     /// Last tick that was processed.
     tick: u64,
@@ -91,10 +95,11 @@ impl Default for Effects {
             specks: Vec::new(),
             confetti: Confetti::default(),
             feelings: Vec::new(),
-            pressure: 0.0,
+            pressures: Vec::new(),
             hint: 0.0,
             start: None,
             has_moved: false,
+            reminder: 0.0,
             has_won: false,
             tick: 0,
             gravity: Vec3::ZERO,
@@ -121,22 +126,28 @@ impl Effects {
             // A new round has begun, so all effects restart.
             let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
             *self = Self {
+                pressures: vec![0.0; bodies.clone().count()],
                 feelings: bodies.map(|(_, body)| Feeling::new(body, eye)).collect(),
                 gravity: Vec3::from(round.level().scene().gravity),
                 room: round.level().arena(),
                 axes: D::N,
+                reminder: self.reminder,
                 ..Self::default()
             };
         }
         self.tick = world.ticks();
-        let mut pressed = 0.0;
+        let mut pressed = vec![0.0f32; self.feelings.len()];
         let mut material = 1;
         let mut looked_up = 0;
         let follows_target = |rigid| {
             let rigid = world.rigid_body(rigid);
             rigid.is_ok_and(|rigid| rigid.follows_target())
         };
-        let mut torn = vec![false; self.feelings.len()];
+        let mut torn: Vec<Option<Vec3>> = vec![None; self.feelings.len()];
+        let rank_of = |body| {
+            let rank = world.soft_bodies().position(|(id, _)| id == body);
+            rank.expect("the event names a body of this world")
+        };
         for event in world.events() {
             match *event {
                 Event::NodeSplit {
@@ -144,8 +155,13 @@ impl Effects {
                     point,
                     energy,
                 } => {
-                    let rank = world.soft_bodies().position(|(id, _)| id == body);
-                    torn[rank.expect("the event names a body of this world")] = true;
+                    let rank = rank_of(body);
+                    let face = self.feelings[rank].at;
+                    let at = point.to_vec3();
+                    let is_nearer = |known: Vec3| (at - face).length() < (known - face).length();
+                    if torn[rank].is_none_or(is_nearer) {
+                        torn[rank] = Some(at);
+                    }
                     camera.shake(0.002 + 0.002 * energy.clamp(0.0, 2.0));
                     if looked_up < LOOKED_UP {
                         looked_up += 1;
@@ -155,33 +171,51 @@ impl Effects {
                     (0..count).for_each(|_| self.spawn_dust(point.to_vec3(), material));
                 }
                 Event::ContactForce(Contact {
-                    pair: [ObjectRef::Piece { .. }, ObjectRef::RigidBody(rigid)],
+                    pair: [ObjectRef::Piece { body, .. }, ObjectRef::RigidBody(rigid)],
                     impulse,
                     ..
                 }) if follows_target(rigid) => {
-                    pressed += impulse / fuwafuwa::DEFAULT_TICK;
+                    pressed[rank_of(body)] += impulse / fuwafuwa::DEFAULT_TICK;
                 }
                 _ => {}
             }
         }
-        self.pressure += 0.2 * (pressed - self.pressure);
+        for (pressure, pressed) in self.pressures.iter_mut().zip(pressed) {
+            *pressure += 0.2 * (pressed - *pressure);
+        }
         self.watch_hand(round);
         self.celebrate(round, still);
         let progress = round.progress();
         let is_in = progress.outcome.is_some() || progress.held > 0.2;
-        let bodies = self.feelings.iter_mut().zip(world.soft_bodies()).zip(torn);
-        for ((feeling, (_, body)), torn) in bodies {
+        let events = torn.into_iter().zip(&self.pressures);
+        let bodies = self.feelings.iter_mut().zip(world.soft_bodies());
+        for ((feeling, (_, body)), (torn, pressure)) in bodies.zip(events) {
             let middle = D::Vector::from_vec3(feeling.middle);
             let in_basket = |region: &Shape<D>| region.distance(middle).0 < 0.0;
             let fate = MoodInput {
                 eye: (D::N == 3).then(|| camera.eye(self.room)),
                 tick: world.ticks(),
                 torn,
-                pressed: self.pressure > HURTS,
+                pressed: *pressure > HURTS,
                 is_in_basket: is_in && round.basket().is_some_and(in_basket),
             };
             feeling.update(body, fate);
         }
+    }
+
+    /// Total contact force between hands and bodies [N], smoothed over some ticks.
+    pub fn pressure(&self) -> f32 {
+        self.pressures.iter().sum()
+    }
+
+    /// Shows the start hint again for some seconds, to a player who is stuck.
+    pub fn remind(&mut self) {
+        self.reminder = REMINDER;
+    }
+
+    /// Whether the start hint is shown again because the player is stuck.
+    pub fn is_reminding(&self) -> bool {
+        self.reminder > 0.0
     }
 
     /// Advances particles, confetti and the start hint by `seconds`.
@@ -209,8 +243,9 @@ impl Effects {
         }
         self.specks.retain(|speck| speck.left > 0.0);
         self.confetti.pass(seconds);
-        let wish = if self.has_moved { 0.0 } else { 1.0 };
-        let pace = if self.has_moved { 3.0 } else { 1.2 };
+        self.reminder = (self.reminder - seconds).max(0.0);
+        let is_hidden = self.has_moved && self.reminder == 0.0;
+        let (wish, pace) = if is_hidden { (0.0, 3.0) } else { (1.0, 1.2) };
         let step = (pace * seconds).min(1.0);
         self.hint += (wish - self.hint).clamp(-step, step);
     }
@@ -308,6 +343,15 @@ mod tests {
             60,
         );
         assert_eq!(effects.hint, 1.0);
+        // A player who is stuck sees the hint again for a while.
+        let mut second = round("classic");
+        play(&mut second, &mut effects, away, 60);
+        assert_eq!(effects.hint, 0.0);
+        effects.remind();
+        play(&mut second, &mut effects, away, 120);
+        assert_eq!((effects.hint, effects.is_reminding()), (1.0, true));
+        play(&mut second, &mut effects, away, 600);
+        assert_eq!((effects.hint, effects.is_reminding()), (0.0, false));
     }
 
     #[test]

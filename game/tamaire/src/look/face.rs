@@ -24,6 +24,8 @@ pub enum Mood {
     Wince,
     /// Expression of a body that was just torn.
     Shock,
+    /// Expression of a body that was torn near its drawn face, or that has lost a large part.
+    Sad,
     /// Expression of a body in the basket.
     Beam,
 }
@@ -96,8 +98,10 @@ impl Face {
             );
         }
         self.draw_mouth(&mut pen);
-        if self.mood == Mood::Wince {
-            draw_sweat(&mut pen);
+        match self.mood {
+            Mood::Wince => draw_sweat(&mut pen),
+            Mood::Sad => draw_tear(&mut pen),
+            Mood::Calm | Mood::Shock | Mood::Beam => {}
         }
         pen.marks
     }
@@ -112,8 +116,12 @@ impl Face {
             }
             // Smiling eyes, like ^ ^.
             Mood::Beam => pen.arch(eye.with_y(0.10), 0.28),
-            Mood::Calm if self.blink > 0.6 => pen.arch(eye.with_y(0.20), -0.12),
-            Mood::Calm | Mood::Shock => {
+            Mood::Calm | Mood::Sad if self.blink > 0.6 => pen.arch(eye.with_y(0.20), -0.12),
+            Mood::Calm | Mood::Sad | Mood::Shock => {
+                if self.mood == Mood::Sad {
+                    // Eyebrows, raised in the middle.
+                    pen.stroke(&[vec2(0.64 * side, 0.44), vec2(0.30 * side, 0.58)]);
+                }
                 let is_shocked = self.mood == Mood::Shock;
                 let (size, pupil) = if is_shocked {
                     (0.25, 0.07)
@@ -150,6 +158,9 @@ impl Face {
         match self.mood {
             Mood::Calm => {
                 pen.curve([[-0.14, -0.16], [-0.08, -0.28], [0.08, -0.28], [0.14, -0.16]]);
+            }
+            Mood::Sad => {
+                pen.curve([[-0.15, -0.32], [-0.08, -0.18], [0.08, -0.18], [0.15, -0.32]]);
             }
             Mood::Wince => {
                 pen.curve([[-0.20, -0.22], [-0.08, -0.08], [0.08, -0.38], [0.20, -0.22]]);
@@ -237,6 +248,16 @@ impl Pen {
 
 /// Draws a drop of sweat at the temple.
 fn draw_sweat(pen: &mut Pen) {
+    draw_drop(pen, vec2(0.80, 0.42), 1.0);
+}
+
+/// Draws a tear below an eye.
+fn draw_tear(pen: &mut Pen) {
+    draw_drop(pen, vec2(0.52, -0.22), 0.8);
+}
+
+/// Draws a drop of water at `at`.
+fn draw_drop(pen: &mut Pen, at: Vec2, scale: f32) {
     let drop = |size: f32| {
         // Corners of the drop, counterclockwise from its tip.
         let outline = [
@@ -247,7 +268,7 @@ fn draw_sweat(pen: &mut Pen) {
             [0.08, 0.02],
         ];
         outline
-            .map(|by| (vec2(0.80, 0.42) + Vec2::from(by) * size).to_array())
+            .map(|by| (at + Vec2::from(by) * (scale * size)).to_array())
             .to_vec()
     };
     pen.area(drop(1.2), rgb(74, 120, 160), 0.02);

@@ -9,9 +9,17 @@ use fuwafuwa_render::anchor;
 const SHOCK: f32 = 0.6;
 /// Time without a tear after which a new tear causes the shocked expression again [s].
 const CALMED: f32 = 0.5;
-/// Thresholds of a body's mean strain. The body winces from the first threshold until its strain is below the
-/// second.
+/// Thresholds of a body's mean strain, without the strain from its own weight. The body winces from the first
+/// threshold until its strain is below the second.
 const HURTS: [f32; 2] = [0.065, 0.045];
+/// Mean speed of the nodes of a piece below which the piece counts as still [m/s].
+const STILL: f32 = 0.06;
+/// Time after which a still body that no hand presses is calm, whatever its strain [s].
+const SETTLED: f32 = 0.6;
+/// Distance of a tear from the centre of a drawn face, in sizes of the face, up to which the face is torn.
+const REGION: f32 = 1.3;
+/// Share of its largest piece that a body may lose before it is sad.
+const LOST: f32 = 0.25;
 /// Interval at which the strain of a body and the position of its drawn face are evaluated [ticks].
 const LOOK: u64 = 5;
 /// Difference in depth by which another node must exceed the node that carries a 2D drawn face, before the
@@ -53,6 +61,16 @@ pub struct Feeling {
     /// In 2D: offset from the seat to the current position of the drawn face [m]. The offset decays to zero.
     seat_offset: Vec3,
     strain: f32,
+    /// Mean strain when the body last lay still, which comes from its own weight.
+    weight_strain: f32,
+    /// Whether the body lies still, as seen last.
+    is_still: bool,
+    /// Time for which the body has lain still and no hand has pressed it [s].
+    settled: f32,
+    /// Mass of the largest piece at the start [kg].
+    whole: f32,
+    /// Whether the body is sad for good: it was torn near its drawn face, or it has lost a large part.
+    is_scarred: bool,
     shock: f32,
     /// Time since the last tear [s].
     seconds_since_tear: f32,
@@ -73,8 +91,8 @@ struct Seat {
 pub struct MoodInput {
     /// Tick number.
     pub tick: u64,
-    /// Whether the body was torn in this tick.
-    pub torn: bool,
+    /// Position of a tear of the body in this tick that is nearest to its drawn face [m].
+    pub torn: Option<Vec3>,
     /// Whether a hand presses hard.
     pub pressed: bool,
     /// Whether the body is in the basket.
@@ -99,6 +117,11 @@ impl Feeling {
             seat: None,
             seat_offset: Vec3::ZERO,
             strain: 0.0,
+            weight_strain: 0.0,
+            is_still: false,
+            settled: 0.0,
+            whole: largest_mass(body),
+            is_scarred: false,
             shock: 0.0,
             seconds_since_tear: CALMED,
         };
@@ -112,8 +135,11 @@ impl Feeling {
     /// Advances the feeling and the drawn face by one tick.
     pub fn update<D: Dim>(&mut self, body: &SoftBody<D>, fate: MoodInput) {
         if fate.tick.is_multiple_of(LOOK) {
-            self.strain = strain(body);
+            (self.strain, self.is_still) = (strain(body), mean_speed(body) < STILL);
+            self.is_scarred |= largest_mass(body) < (1.0 - LOST) * self.whole;
         }
+        self.is_scarred |=
+            { fate.torn }.is_some_and(|at| (at - self.at).length() < REGION * self.size);
         let looks = fate.tick.is_multiple_of(LOOK);
         if let Some(anchor) = &mut self.anchor {
             anchor.follow(body, fate.eye, looks, DEFAULT_TICK);
@@ -143,7 +169,15 @@ impl Feeling {
     fn feel(&mut self, fate: MoodInput) {
         self.age += DEFAULT_TICK;
         self.shock = (self.shock - DEFAULT_TICK).max(0.0);
-        if fate.torn {
+        self.settled = match self.is_still && !fate.pressed {
+            true => self.settled + DEFAULT_TICK,
+            false => 0.0,
+        };
+        let is_settled = self.settled > SETTLED;
+        if is_settled {
+            self.weight_strain = self.strain;
+        }
+        if fate.torn.is_some() {
             if self.seconds_since_tear >= CALMED {
                 self.shock = SHOCK;
             }
@@ -151,11 +185,13 @@ impl Feeling {
         }
         self.seconds_since_tear += DEFAULT_TICK;
         let limit = HURTS[usize::from(self.mood == Mood::Wince)];
-        let hurts = fate.pressed || self.strain > limit || self.seconds_since_tear < CALMED;
+        let is_strained = !is_settled && self.strain - self.weight_strain > limit;
+        let hurts = fate.pressed || is_strained || self.seconds_since_tear < CALMED;
         let mood = match () {
             () if fate.is_in_basket => Mood::Beam,
             () if self.shock > 0.0 => Mood::Shock,
             () if hurts => Mood::Wince,
+            () if self.is_scarred => Mood::Sad,
             () => Mood::Calm,
         };
         // A mood lasts at least 0.25 s, so that it can be read.
@@ -266,6 +302,23 @@ fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
     best.map(|(_, seat)| seat)
 }
 
+/// Returns the mass of the largest piece [kg].
+fn largest_mass<D: Dim>(body: &SoftBody<D>) -> f32 {
+    masses(body).iter().copied().fold(0.0, f32::max)
+}
+
+/// Returns the mean speed of the nodes of the largest piece [m/s].
+fn mean_speed<D: Dim>(body: &SoftBody<D>) -> f32 {
+    let piece = largest_piece(body);
+    let nodes = body.mesh().nodes();
+    let own = nodes.filter(|&(id, _)| body.pieces().of_node(id) == piece);
+    let (sum, mass) = own.fold((0.0, 0.0), |(sum, all), (id, _)| {
+        let (_, velocity, mass) = body.node_state(id);
+        (sum + mass * velocity.to_vec3().length(), all + mass)
+    });
+    sum / mass.max(1e-9)
+}
+
 /// Mean strain of the largest piece, weighted by volume. In a large piece only some of the elements are
 /// sampled.
 fn strain<D: Dim>(body: &SoftBody<D>) -> f32 {
@@ -374,7 +427,7 @@ mod tests {
         let mut feeling = Feeling::new(body, None);
         let torn = MoodInput {
             tick: 1,
-            torn: true,
+            torn: Some(Vec3::splat(99.0)),
             ..MoodInput::default()
         };
         feeling.update(body, torn);
@@ -400,5 +453,86 @@ mod tests {
             },
         );
         assert_eq!(feeling.mood, Mood::Beam);
+    }
+
+    /// Returns the mood after `ticks` ticks with the same input.
+    fn mood<D: Dim>(
+        feeling: &mut Feeling,
+        body: &SoftBody<D>,
+        fate: MoodInput,
+        ticks: usize,
+    ) -> Mood {
+        let fate = MoodInput { tick: LOOK, ..fate };
+        (0..ticks).for_each(|_| feeling.update(body, fate));
+        feeling.mood
+    }
+
+    #[test]
+    fn strained_body_at_rest_is_calm_after_a_second() {
+        let grid = VoxelGrid::<Dim2>::ball(16, 1.0);
+        let (mut world, soft) = alone(grid.expect("the grid is valid"));
+        let body = world.soft_body_mut(soft).unwrap();
+        let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
+        let mut stretch = |world: &mut World<Dim2>, share: f32, velocity: Vec2| {
+            let body = world.soft_body_mut(soft).unwrap();
+            for &id in &ids {
+                let at = body.node_state(id).0 * Vec2::new(share, 1.0 / share);
+                body.set_node_state(id, at, velocity).unwrap();
+            }
+        };
+        stretch(&mut world, 1.2, Vec2::X);
+        let mut feeling = Feeling::new(&world[soft], None);
+        let none = MoodInput::default();
+        assert_eq!(
+            mood(&mut feeling, &world[soft], none, 60),
+            Mood::Wince,
+            "moving"
+        );
+        stretch(&mut world, 1.0, Vec2::ZERO);
+        assert_eq!(mood(&mut feeling, &world[soft], none, 60), Mood::Calm);
+        let pressed = MoodInput {
+            pressed: true,
+            ..none
+        };
+        assert_eq!(mood(&mut feeling, &world[soft], pressed, 60), Mood::Wince);
+        // The strain at rest does not hurt later, either.
+        stretch(&mut world, 1.0, Vec2::X);
+        assert_eq!(mood(&mut feeling, &world[soft], none, 60), Mood::Calm);
+        stretch(&mut world, 1.2, Vec2::X);
+        assert_eq!(mood(&mut feeling, &world[soft], none, 60), Mood::Wince);
+    }
+
+    #[test]
+    fn body_torn_at_its_face_or_halved_stays_sad() {
+        let ball = || alone(VoxelGrid::<Dim2>::ball(16, 1.0).expect("the grid is valid"));
+        let (mut world, soft) = ball();
+        let none = MoodInput::default();
+        let torn_at = |point: Vec3| MoodInput {
+            torn: Some(point),
+            ..none
+        };
+        let after = |feeling: &mut Feeling, fate, body: &SoftBody<Dim2>| {
+            mood(feeling, body, fate, 1);
+            mood(feeling, body, none, 200)
+        };
+        let mut feeling = Feeling::new(&world[soft], None);
+        let (face, size) = (feeling.at, feeling.size);
+        let aside = face + Vec3::new(2.0 * size, 0.0, 0.0);
+        assert_eq!(
+            after(&mut feeling, torn_at(aside), &world[soft]),
+            Mood::Calm
+        );
+        let near = face + Vec3::new(0.5 * size, 0.0, 0.0);
+        assert_eq!(after(&mut feeling, torn_at(near), &world[soft]), Mood::Sad);
+
+        let mut feeling = Feeling::new(&world[soft], None);
+        let blade = Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0));
+        world.cut(soft, &blade).unwrap();
+        assert_eq!(mood(&mut feeling, &world[soft], none, 200), Mood::Sad);
+        let beam = MoodInput {
+            is_in_basket: true,
+            ..none
+        };
+        assert_eq!(mood(&mut feeling, &world[soft], beam, 1), Mood::Beam);
     }
 }

@@ -4,16 +4,18 @@ use super::feelings::Feeling;
 use super::rest_frame::{camera, face_at_rest, frame};
 use super::{DrawOptions, Face, Maps, Mood, glow, hint};
 use app_shell::pass::{PaintCallback, lock, pixels};
-use app_shell::{SpaceStage, Theme, View};
+use app_shell::{SpaceStage, Theme};
 use eframe::egui_wgpu::{Callback, RenderState};
-use egui::{Color32, Painter, Pos2, Stroke, Ui};
+use egui::{Color32, Painter, Shape, Stroke, Ui};
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Vec3};
-use fuwafuwa_render::{Ages, Cost, Frame, Particle, Renderer, Sticker, space};
+use fuwafuwa_render::{Ages, Cost, Frame, Outlines, Particle, Renderer, Rest, Sticker, space};
 use std::sync::{Arc, Mutex};
 use tamaire_play::{AnyRound, Level, Round};
 
 /// Line colour of a ghost in 2D.
 const GHOST: Color32 = Color32::from_rgba_premultiplied(42, 38, 56, 120);
+/// Line width of a ghost in 2D [points].
+const GHOST_LINE: f32 = 3.0;
 
 /// Sine of the camera's elevation above which the cutaway view removes the upper part of bodies instead of the
 /// front part.
@@ -28,6 +30,8 @@ pub struct Stage {
     /// Round whose elements `ages` follows: its level and the last tick seen.
     followed: Option<(Arc<Level>, u64)>,
     maps: Maps,
+    /// Outlines of a ghost in 2D, and the smoothing offsets of its bodies.
+    ghost: (Outlines, Vec<Rest>),
     time: f64,
 }
 
@@ -42,6 +46,7 @@ impl Stage {
             ages: Ages::default(),
             followed: None,
             maps: Maps::default(),
+            ghost: Default::default(),
             time: 0.0,
         }
     }
@@ -98,6 +103,7 @@ impl Stage {
             seconds: if look.reduced_motion { 0.0 } else { look.time },
             ..frame(camera, round, look.theme)
         };
+        self.space.resolution = look.resolution;
         self.space.draw(ui, look.view.rect, round.world(), &frame);
         let painter = ui.painter();
         hint::draw_ring_of_space(painter, round, look);
@@ -106,7 +112,10 @@ impl Stage {
 
     fn draw_plane(&mut self, ui: &Ui, round: &Round<Dim2>, look: &DrawOptions) {
         let view = &look.view;
-        let size = pixels(ui, view.rect);
+        let size = pixels(ui, view.rect).map(|side| {
+            let side = (side as f32 * look.resolution).round();
+            (side as u32).max(1)
+        });
         self.follow_ages(round, look);
         let specks = particles(look);
         let frame = Frame {
@@ -117,7 +126,8 @@ impl Stage {
         };
         let RenderState { device, queue, .. } = &self.state;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let mut renderer = lock(&self.renderer);
+        let shared = self.renderer.clone();
+        let mut renderer = lock(&shared);
         renderer.prepare(device, queue, &mut encoder, round.world(), &frame, size);
         queue.submit([encoder.finish()]);
         let painter = ui.painter();
@@ -132,10 +142,34 @@ impl Stage {
         paint(Renderer::paint_rigid);
         glow::draw(painter, round, look);
         if let Some(AnyRound::Plane(ghost)) = look.ghost {
-            draw_ghost(painter, ghost, view);
+            self.draw_ghost(painter, ghost, look);
         }
         hint::draw(painter, round, look);
         look.effects.confetti.draw(painter, view);
+    }
+
+    /// Draws an earlier round: the outlines of its bodies, as smooth as their skin, and its hands.
+    fn draw_ghost(&mut self, painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
+        let (view, stroke) = (&look.view, Stroke::new(GHOST_LINE, GHOST));
+        let (rings, rests) = &mut self.ghost;
+        rests.resize_with(round.world().soft_bodies().count(), Rest::default);
+        for ((_, body), rest) in round.world().soft_bodies().zip(rests) {
+            if !rest.matches_grid(body.grid()) {
+                *rest = Rest::new(body.grid());
+            }
+            rings.trace(body, rest);
+            for span in &rings.spans {
+                let points = rings.points[span.start..span.end].iter();
+                let points = points.map(|point| view.to_screen(point.at.extend(0.0)));
+                painter.add(Shape::closed_line(points.collect(), stroke));
+            }
+        }
+        for (player, hand) in round.hands().enumerate() {
+            let at = view.to_screen(hand.position().extend(0.0));
+            let radius = view.scale * hand.shape().inradius();
+            let tone = look.theme.hand(player).gamma_multiply(0.35);
+            painter.circle(at, radius, tone, stroke);
+        }
     }
 
     /// Updates the ages of elements for the element view. The ages restart with each round, since a new world
@@ -218,7 +252,7 @@ fn faces<D: Dim>(round: &Round<D>, look: &DrawOptions) -> Vec<Face> {
         let hands = round.hands().map(|hand| hand.position().to_vec3());
         let away = |hand: &Vec3| (*hand - feeling.at).length();
         let nearest = hands.min_by(|a, b| away(a).total_cmp(&away(b)));
-        let start = match look.reduced_motion || feeling.mood == Mood::Calm {
+        let start = match look.reduced_motion || matches!(feeling.mood, Mood::Calm | Mood::Sad) {
             true => 0.0,
             false => 0.16 * (-9.0 * feeling.age).exp(),
         };
@@ -229,28 +263,4 @@ fn faces<D: Dim>(round: &Round<D>, look: &DrawOptions) -> Vec<Face> {
         }
     };
     feelings.iter().enumerate().map(face).collect()
-}
-
-/// Draws the outlines of an earlier round.
-fn draw_ghost(painter: &Painter, round: &Round<Dim2>, view: &View) {
-    let stroke = Stroke::new(2.5, GHOST);
-    for (_, body) in round.world().soft_bodies() {
-        for outline in body.outlines() {
-            let points = outline.points.iter().map(|&at| view.to_screen(at));
-            let points: Vec<Pos2> = points.collect();
-            // Draws single segments, because the mitres of a polyline would stick out where a crack turns
-            // back.
-            for (index, &point) in points.iter().enumerate() {
-                let next = points[(index + 1) % points.len()];
-                painter.line_segment([point, next], stroke);
-            }
-        }
-    }
-    for hand in round.hands() {
-        painter.circle_stroke(
-            view.to_screen(hand.position().extend(0.0)),
-            view.scale * hand.shape().inradius(),
-            stroke,
-        );
-    }
 }

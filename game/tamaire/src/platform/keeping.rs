@@ -127,7 +127,7 @@ pub(super) fn keep_best(storage: &dyn Storage, name: &str, replay: &Replay) -> i
     storage.change(Kind::Best, name, &mut |found| {
         let known = found.and_then(|found| Replay::of_bytes(found).ok());
         let stays = known.is_some_and(|known| {
-            known.level_hash == replay.level_hash && known.ticks() <= replay.ticks()
+            known.level_hash == replay.level_hash && known.clock_ticks() <= replay.clock_ticks()
         });
         (!stays).then(|| text.clone().into_bytes())
     })

@@ -1,7 +1,7 @@
-//! Overlay of a round: clock, fill level of the basket, and unusual modes.
+//! Overlay of a round: clock, goals, fill level of the basket, and unusual modes.
 
 use super::buttons::{self, EDGE, GAP, HIGH, pale};
-use super::icons;
+use super::{goals, icons};
 use crate::game::Game;
 use crate::input::Action;
 use app_shell::Theme;
@@ -19,6 +19,8 @@ const JAR: f32 = 36.0;
 /// Maximum scale of the overlay. In a small window egui's zoom is reduced, so that menus fit. The overlay
 /// needs less room, so it is enlarged again, at most by this factor.
 const MOST: f32 = 1.4;
+/// Minimum width of a window for the overlay [points at scale 1]. A narrower window is not enlarged.
+const NARROWEST: f32 = 375.0;
 
 /// Shows the overlay; returns whether the mouse is over a button.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
@@ -46,6 +48,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
         right,
     };
     draw_clock(&mut row, &theme, game);
+    goals::strip(&mut row, &theme, game);
     draw_chips(&mut row, &theme, game);
     draw_lesson(ui, screen, scale, game);
     is_on_button
@@ -58,14 +61,15 @@ pub(super) fn height(game: &Game, ui: &Ui) -> f32 {
 
 /// Scale of the overlay.
 pub(super) fn scale(game: &Game, ui: &Ui) -> f32 {
-    (game.settings.text_size / ui.ctx().zoom_factor()).clamp(1.0, MOST)
+    let room = (ui.max_rect().width() / NARROWEST).max(1.0);
+    (game.settings.text_size / ui.ctx().zoom_factor()).clamp(1.0, MOST.min(room))
 }
 
 /// Flow layout of a row that wraps at the right edge.
-struct ChipRow<'a> {
-    painter: &'a Painter,
+pub(super) struct ChipRow<'a> {
+    pub(super) painter: &'a Painter,
     fill: Color32,
-    scale: f32,
+    pub(super) scale: f32,
     start: f32,
     at: Pos2,
     right: f32,
@@ -73,7 +77,7 @@ struct ChipRow<'a> {
 
 impl ChipRow<'_> {
     /// Reserves a rectangle of unscaled width `width` and draws its background.
-    fn take(&mut self, width: f32) -> Rect {
+    pub(super) fn take(&mut self, width: f32) -> Rect {
         let size = self.scale * vec2(width, HIGH);
         if self.at.x + size.x > self.right && self.at.x > self.start {
             self.at = pos2(self.start, self.at.y + self.scale * (HIGH + GAP));
@@ -85,14 +89,9 @@ impl ChipRow<'_> {
     }
 }
 
-/// Draws the elapsed time.
+/// Draws the time since the first push.
 fn draw_clock(row: &mut ChipRow, theme: &Theme, game: &Game) {
-    let round = game.bout.round();
-    let seconds = match round.progress().outcome {
-        Some(outcome) => outcome.seconds(),
-        None => round.frames().len() as f32 / 60.0,
-    };
-    let clock = format!("{seconds:.1}");
+    let clock = format!("{:.1}", game.bout.round().seconds());
     // Reserves at least four characters, so that the clock does not jump.
     let at = row.take(34.0 + 15.0 * clock.len().max(4) as f32).center();
     let font = FontId::proportional(26.0 * row.scale);

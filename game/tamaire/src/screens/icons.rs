@@ -133,6 +133,48 @@ pub(super) fn two(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     }
 }
 
+/// Draws a basket that is open at the top.
+pub(super) fn basket(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    let points = [[-10.0, -7.0], [-7.0, 8.0], [7.0, 8.0], [10.0, -7.0]];
+    let points = points.map(|[x, y]| at + scale * vec2(x, y));
+    let stroke = Stroke::new(2.5 * scale, ink);
+    painter.add(Shape::line(points.to_vec(), stroke));
+    for share in [0.33, 0.67] {
+        let side = points[0] + share * (points[1] - points[0]);
+        let other = points[3] + share * (points[2] - points[3]);
+        painter.line_segment([side, other], Stroke::new(1.5 * scale, ink));
+    }
+}
+
+/// Draws a clock face.
+pub(super) fn clock(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    let stroke = Stroke::new(2.5 * scale, ink);
+    painter.circle_stroke(at, 9.5 * scale, stroke);
+    for [x, y] in [[0.0, -6.0], [4.5, 2.0]] {
+        painter.line_segment([at, at + scale * vec2(x, y)], stroke);
+    }
+}
+
+/// Draws a body of which a small part is missing.
+pub(super) fn kept(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    let stroke = Stroke::new(2.5 * scale, ink);
+    painter.circle_stroke(at, 9.0 * scale, Stroke::new(1.0 * scale, ink));
+    arc(painter, at, 9.0 * scale, 0.85, stroke);
+    painter.circle_filled(at, 5.5 * scale, ink);
+}
+
+/// Draws some pieces.
+pub(super) fn pieces(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    for [x, y, radius] in [
+        [-5.5, -4.0, 4.5],
+        [5.0, -6.0, 3.0],
+        [4.0, 4.5, 5.0],
+        [-6.0, 6.5, 2.5],
+    ] {
+        painter.circle_filled(at + scale * vec2(x, y), radius * scale, ink);
+    }
+}
+
 /// Draws an upward arrow.
 pub(super) fn up(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     polygon(

@@ -4,6 +4,7 @@ mod attendant;
 mod buttons;
 mod confirmation;
 mod forces;
+mod goals;
 mod hud;
 mod icons;
 mod levels;
@@ -19,6 +20,7 @@ mod settings;
 #[cfg(not(target_family = "wasm"))]
 mod stand;
 mod title;
+mod together;
 mod widgets;
 
 pub use attendant::StandController;
@@ -36,6 +38,7 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     }
     match game.screen() {
         Screen::Title => title::show(game, ui),
+        Screen::Together => together::show(game, ui),
         Screen::Levels => levels::show(game, stage, ui),
         Screen::Play => play::show(game, ui),
         Screen::Paused => paused::show(game, ui),

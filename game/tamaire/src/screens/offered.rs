@@ -37,7 +37,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 .rect_stroke(rect.expand(2.5), 20.0, frame, StrokeKind::Middle);
             let name = game.settings.language.of(&level.game().name);
             line(ui, name, 24.0, theme.ink);
-            let seconds = replay.ticks() as f32 * fuwafuwa::DEFAULT_TICK;
+            let seconds = replay.seconds();
             let how = match replay.outcome {
                 Some(outcome) => format!("{} {seconds:.1} s", (said.route)(outcome.route)),
                 None => format!("{seconds:.1} s"),

@@ -1,5 +1,6 @@
 //! Pause menu.
 
+use super::goals;
 use super::widgets::{Act, card, column, dim_background, menu, perform, title};
 use crate::game::{Game, Screen};
 use egui::{Ui, vec2};
@@ -10,7 +11,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let wanted = column(ui, 380.0, 0.5, |ui| {
         card(ui, &theme, |ui| {
             title(ui, &theme, said.paused);
-            ui.add_space(14.0);
+            ui.add_space(6.0);
+            goals::lines(ui, &theme, game);
+            ui.add_space(10.0);
             let options: [(&str, Act); 6] = [
                 (said.go_on, |game| game.go(Screen::Play)),
                 (said.again, Game::retry),

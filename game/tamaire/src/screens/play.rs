@@ -23,14 +23,16 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     view.centre[1] -= 0.1 * share * view.height();
     game.bout.view = Some(view);
     let theme = game.theme();
-    // Until the first level has been won, the hint shows how to push the body into the basket.
+    // Until the first level has been won, the hint shows how to push the body into the basket, and again if
+    // the player is stuck.
     let is_first = game
         .levels
         .first()
         .is_some_and(|first| first.id == level.id);
     let hint = match game.screen() {
         Screen::Play | Screen::Paused if game.bout.session.is_played() => {
-            match is_first && game.records.of(&level.id).is_none() {
+            let is_new = game.records.of(&level.id).is_none();
+            match is_first && (is_new || game.bout.effects.is_reminding()) {
                 true => Hint::Way,
                 false => Hint::Hand,
             }
@@ -50,6 +52,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         ghost: game.bout.session.ghost(),
         hint,
         reduced_motion: game.settings.reduced_motion,
+        resolution: game.quality().resolution(),
     };
     stage.draw(ui, game.bout.round(), &look);
 }
@@ -59,7 +62,12 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let is_on_button = hud::show(game, ui);
     offers::show(game, ui);
     if game.bout.session.is_played() && !is_on_button {
-        ui.ctx().set_cursor_icon(egui::CursorIcon::None);
+        // The pointer stays visible until it has picked up the hand.
+        ui.ctx()
+            .set_cursor_icon(match game.controls.players.is_picked_up(0) {
+                true => egui::CursorIcon::None,
+                false => egui::CursorIcon::Grab,
+            });
     }
     let is_seen = game.bout.round().progress().outcome.is_none() || game.bout.has_cheered();
     if !game.bout.session.is_played() && game.bout.session.is_over() && is_seen {

@@ -111,7 +111,7 @@ pub(super) fn numbers(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcom
     });
 }
 
-/// Shows the goals of the level, with a filled star for each one reached.
+/// Shows the goals of the level, with a filled star for each one reached and the figure that missed one.
 fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &[Wish]) {
     let most = ui.available_width();
     let lines = wishes.iter().map(|wish| {
@@ -119,7 +119,9 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
             true => ("★", theme.ink),
             false => ("☆", theme.faint),
         };
-        let text = format!("{star} {}", (said.wish)(wish));
+        let missed = (said.near_miss)(wish, outcome);
+        let found = missed.map_or(String::new(), |found| format!("  ({found})"));
+        let text = format!("{star} {}{found}", (said.wish)(wish));
         (fitted(ui.painter(), &text, 20.0, most, ink), ink)
     });
     let lines: Vec<_> = lines.collect();
@@ -137,7 +139,7 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
 /// all goals of the current level are reached; otherwise it restarts the level.
 fn buttons(ui: &mut Ui, theme: &Theme, said: &Words, is_reached: bool) -> Option<Act> {
     let mut wanted: Option<Act> = None;
-    let width = 2.0 * 200.0 + GAP;
+    let width = (2.0 * 200.0 + GAP).min(ui.available_width());
     let again: (&str, Act) = (said.play_again, Game::retry);
     let next: (&str, Act) = (said.next, next);
     let (main, other) = if is_reached {

@@ -4,7 +4,7 @@ use super::confirmation::{is_pending, set_pending};
 use super::widgets::{card, choice, dim_background, header, page, page_rect, slider};
 use crate::game::{Game, Screen};
 use crate::input::{Action, Scanning};
-use crate::settings::Settings;
+use crate::settings::{Quality, Settings};
 use crate::words::{Language, Words};
 use app_shell::Theme;
 use app_shell::widgets::{ButtonStyle, button};
@@ -73,6 +73,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 switch(ui, said.full_screen, &mut chosen.full_screen);
                 switch(ui, said.reduced_motion, &mut chosen.reduced_motion);
                 switch(ui, said.colour_safe, &mut chosen.colour_safe);
+                let names = Quality::ALL.map(|quality| (quality, (said.quality_name)(quality)));
+                choice(ui, &theme, said.quality, &mut chosen.quality, &names);
                 let text_size = &mut chosen.text_size;
                 slider(ui, &theme, said.text_size, text_size, 0.8, 1.6, 0.1);
             });

@@ -11,6 +11,9 @@ use tamaire_sound::Menu;
 /// visible.
 const ACROSS: f32 = 0.14;
 
+/// Width of a portrait window in which the title leaves no room for the language button above it [points].
+const NARROW: f32 = 480.0;
+
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     dim_background(ui, 70);
     let (theme, said) = (game.theme(), game.words());
@@ -29,6 +32,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         words(ui, top + vec2(0.0, 78.0), "tamaire", 34.0, theme.ink);
         let options = [
             (said.play, Screen::Levels),
+            (said.two_players, Screen::Together),
             (said.replays, Screen::Replays),
             (said.settings, Screen::Settings),
         ];
@@ -73,7 +77,11 @@ fn switch_language(game: &mut Game, ui: &mut Ui) {
     } else {
         vec2(-72.0, 52.0)
     };
-    let at = corner + inwards - vec2(size.x, 0.0);
+    let mut at = corner + inwards - vec2(size.x, 0.0);
+    if is_upright && ui.max_rect().width() < NARROW {
+        // With large texts, the title reaches up to the corner.
+        at.y = ui.max_rect().bottom() - 14.0 - size.y;
+    }
     let rect = Rect::from_min_size(at, size);
     let theme = game.theme();
     let spoken = game.settings.language;

@@ -250,6 +250,9 @@ pub fn header_to_open(ui: &mut Ui, game: &mut Game, text: &str) -> Response {
     back
 }
 
+/// Width of a header below which its headline is below its buttons [points].
+const NARROW: f32 = 480.0;
+
 /// Shows a header with the contents `right` at its right end. Returns the back button's response and the
 /// result of `right`.
 fn header_with<R>(
@@ -261,6 +264,7 @@ fn header_with<R>(
 ) -> (Response, R) {
     let room = vec2(ui.available_width(), 56.0);
     let layout = Layout::left_to_right(Align::Center);
+    let is_narrow = room.x < NARROW;
     let inner = ui.allocate_ui_with_layout(room, layout, |ui| {
         // The next widget may be far to the right, where egui's downward search does not find it. So the
         // arrow keys move the focus from the back button in the order of the widgets.
@@ -270,10 +274,15 @@ fn header_with<R>(
         }
         let response = button(ui, theme, back, vec2(140.0, 48.0), ButtonStyle::Other);
         ui.add_space(16.0);
-        title(ui, theme, text);
+        if !is_narrow {
+            title(ui, theme, text);
+        }
         let right = ui.with_layout(Layout::right_to_left(Align::Center), right);
         (response, right.inner)
     });
+    if is_narrow {
+        title(ui, theme, text);
+    }
     ui.add_space(6.0);
     inner.inner
 }

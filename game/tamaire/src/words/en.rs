@@ -1,7 +1,9 @@
 //! Texts of the game in English.
 
 use super::Words;
+use super::{percent_below, tenths_above};
 use crate::input::{Action, InputMethod};
+use crate::settings::Quality;
 use force_feedback::{Ability, Stop};
 use fuwafuwa_scenes::import::{ImportNote, NoteKind};
 use tamaire_play::{Assist, Route};
@@ -242,6 +244,63 @@ pub(super) const WORDS: Words = Words {
     level_error: |error| error.to_string(),
     import_note,
     replay_error: |error| error.to_string(),
+    goal: |wish| {
+        let mut parts = Vec::new();
+        parts.extend(wish.route.map(|route| match route {
+            Route::Squeeze => "whole".to_string(),
+            Route::Shave => "shaved".to_string(),
+            Route::Mix => "both ways".to_string(),
+        }));
+        parts.extend(wish.seconds.map(|most| format!("{most} s")));
+        parts.extend(
+            wish.kept
+                .map(|least| format!("keep {:.0} %", 100.0 * least)),
+        );
+        parts.extend(wish.pieces.map(|least| format!("{least} pieces")));
+        parts.join(", ")
+    },
+    share: |found, needed| format!("{} / {:.0} %", percent_below(found), 100.0 * needed),
+    share_in_basket: |found, needed| {
+        let found = percent_below(found);
+        format!("in the basket: {found} of {:.0} %", 100.0 * needed)
+    },
+    near_miss: |wish, outcome| {
+        let seconds = wish.seconds.filter(|most| outcome.seconds() > *most);
+        let kept = wish.kept.filter(|least| outcome.kept < *least);
+        let pieces = wish.pieces.filter(|least| outcome.pieces < *least);
+        let parts = [
+            seconds.map(|_| format!("{:.1} s", tenths_above(outcome.seconds()))),
+            kept.map(|least| {
+                let found = percent_below(outcome.kept);
+                format!("{found} of {:.0} %", 100.0 * least)
+            }),
+            pieces.map(|least| format!("{} of {least}", outcome.pieces)),
+        ];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        (!parts.is_empty()).then(|| parts.join(", "))
+    },
+    quality: "Picture quality",
+    quality_name: |quality| match quality {
+        Quality::Automatic => "Automatic",
+        Quality::High => "High",
+        Quality::Medium => "Medium",
+        Quality::Low => "Low",
+    },
+    quality_lowered: "This device draws slowly, so the picture quality was lowered. You can change it in Settings.",
+    drawing_slow: "This device draws slowly. A lower picture quality (in Settings) or a smaller window helps.",
+    two_players: "Two players",
+    who_plays: |[arrows, letters]| {
+        [
+            format!("First hand: mouse, or {arrows}"),
+            format!("Second hand: {letters}"),
+            "Stick or pad: its Second player button takes the second hand.".into(),
+            "Touch screen: in a 2D round, tap the two dots. Another finger then moves the second hand.".into(),
+        ]
+    },
+    play_as_two: "Play as two",
+    play_alone: "Play alone",
+    no_letter_keys: "Only arrow keys are set for moving. Choose letter keys for the second player in Settings, Controls.",
+    one_hand: "This level has only one hand, so one player plays.",
 };
 
 fn import_note(note: &ImportNote) -> String {

@@ -1,7 +1,9 @@
 //! Texts of the game in Japanese (日本語).
 
 use super::Words;
+use super::{percent_below, tenths_above};
 use crate::input::{Action, InputMethod};
+use crate::settings::Quality;
 use force_feedback::{Ability, Stop};
 use fuwafuwa_scenes::import::{ImportNote, NoteKind};
 use tamaire_play::level::LevelError;
@@ -244,6 +246,61 @@ pub(super) const WORDS: Words = Words {
     level_error,
     import_note,
     replay_error,
+    goal: |wish| {
+        let mut parts = Vec::new();
+        parts.extend(wish.route.map(|route| match route {
+            Route::Squeeze => "まるごと".to_string(),
+            Route::Shave => "けずる".to_string(),
+            Route::Mix => "けずっておしこむ".to_string(),
+        }));
+        parts.extend(wish.seconds.map(|most| format!("{most}秒")));
+        parts.extend(
+            wish.kept
+                .map(|least| format!("{:.0}％のこす", 100.0 * least)),
+        );
+        parts.extend(wish.pieces.map(|least| format!("{least}こ")));
+        parts.join("・")
+    },
+    share: |found, needed| format!("{}／{:.0}％", percent_below(found), 100.0 * needed),
+    share_in_basket: |found, needed| {
+        let found = percent_below(found);
+        format!("かごの中：{found}％（目標 {:.0}％）", 100.0 * needed)
+    },
+    near_miss: |wish, outcome| {
+        let seconds = wish.seconds.filter(|most| outcome.seconds() > *most);
+        let kept = wish.kept.filter(|least| outcome.kept < *least);
+        let pieces = wish.pieces.filter(|least| outcome.pieces < *least);
+        let parts = [
+            seconds.map(|_| format!("{:.1}秒だった", tenths_above(outcome.seconds()))),
+            kept.map(|_| format!("{}％だった", percent_below(outcome.kept))),
+            pieces.map(|_| format!("{}こだった", outcome.pieces)),
+        ];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        (!parts.is_empty()).then(|| parts.join("・"))
+    },
+    quality: "画質",
+    quality_name: |quality| match quality {
+        Quality::Automatic => "自動",
+        Quality::High => "高",
+        Quality::Medium => "中",
+        Quality::Low => "低",
+    },
+    quality_lowered: "絵をかくのに時間がかかるので、画質を下げました。設定で変えられます。",
+    drawing_slow: "絵をかくのに時間がかかっています。設定で画質を下げるか、ウィンドウを小さくすると よくなります。",
+    two_players: "ふたりであそぶ",
+    who_plays: |[arrows, letters]| {
+        [
+            format!("ひとつめの手：マウス、または {arrows}"),
+            format!("ふたつめの手：{letters}"),
+            "スティックやパッド：「ふたりで」のボタンで ふたつめの手を動かせます。".into(),
+            "タッチ画面：2Dのステージで 二つの点をおすと、二本目の指で ふたつめの手を動かせます。"
+                .into(),
+        ]
+    },
+    play_as_two: "ふたりで はじめる",
+    play_alone: "ひとりで あそぶ",
+    no_letter_keys: "動かすキーが矢印だけです。設定の「操作」で、ふたりめの人の文字キーをえらんでください。",
+    one_hand: "このステージの手は ひとつだけなので、ひとりであそびます。",
 };
 
 fn import_note(note: &ImportNote) -> String {

@@ -69,3 +69,58 @@ impl Language {
         }
     }
 }
+
+/// Returns a share in whole percent, rounded down, so that a share below a limit never looks like the limit.
+fn percent_below(share: f32) -> u32 {
+    // The tolerance of 1e-4 covers rounding errors: 0.29 × 100 is less than 29.
+    (100.0 * share + 1e-4).floor() as u32
+}
+
+/// Returns a time in tenths of a second, rounded up, so that a time above a limit never looks like the limit.
+fn tenths_above(seconds: f32) -> f32 {
+    (10.0 * seconds - 1e-3).ceil() / 10.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tamaire_play::{Outcome, Route, Wish};
+
+    #[test]
+    fn near_miss_names_only_missed_figures_and_never_shows_the_limit() {
+        let outcome = Outcome {
+            ticks: 1201,
+            route: Route::Shave,
+            kept: 0.8999,
+            inside: 0.7,
+            pieces: 3,
+            lost: 0,
+        };
+        let wish = |seconds, kept, pieces| Wish {
+            seconds,
+            kept,
+            pieces,
+            route: None,
+        };
+        for (wish, english, japanese) in [
+            (
+                wish(Some(20.0), None, None),
+                Some("20.1 s"),
+                Some("20.1秒だった"),
+            ),
+            (
+                wish(None, Some(0.9), None),
+                Some("89 of 90 %"),
+                Some("89％だった"),
+            ),
+            (wish(None, None, Some(5)), Some("3 of 5"), Some("3こだった")),
+            (wish(Some(21.0), Some(0.5), Some(3)), None, None),
+        ] {
+            let told = |language: Language| (language.words().near_miss)(&wish, &outcome);
+            assert_eq!(told(Language::English).as_deref(), english);
+            assert_eq!(told(Language::Japanese).as_deref(), japanese);
+        }
+        assert_eq!((Language::English.words().share)(0.29, 0.6), "29 / 60 %");
+        assert_eq!((Language::English.words().share)(0.5999, 0.6), "59 / 60 %");
+    }
+}

@@ -1,6 +1,7 @@
 //! List of the texts that every language provides.
 
 use crate::input::{Action, InputMethod};
+use crate::settings::Quality;
 use force_feedback::{Ability, Calibration, Stop};
 use fuwafuwa_scenes::import::ImportNote;
 use tamaire_play::level::LevelError;
@@ -120,4 +121,23 @@ pub struct Words {
     /// Note on an imported file: what was left out of it or may surprise.
     pub import_note: fn(&ImportNote) -> String,
     pub replay_error: fn(&ReplayError) -> String,
+    /// Short text of a wish, for the strip over a round.
+    pub goal: fn(&Wish) -> String,
+    /// Share of the mass at rest in the basket, and the required share.
+    pub share: fn(f32, f32) -> String,
+    /// As `share`, as a line of the pause menu.
+    pub share_in_basket: fn(f32, f32) -> String,
+    /// Figures of the outcome that miss the limits of a wish. `None` if there are none.
+    pub near_miss: fn(&Wish, &Outcome) -> Option<String>,
+    pub quality: &'static str,
+    pub quality_name: fn(Quality) -> &'static str,
+    pub quality_lowered: &'static str,
+    pub drawing_slow: &'static str,
+    pub two_players: &'static str,
+    /// Explanation of who plays with what. The arguments are the names of the arrow keys and of the letter keys.
+    pub who_plays: fn(&[String; 2]) -> [String; 4],
+    pub play_as_two: &'static str,
+    pub play_alone: &'static str,
+    pub no_letter_keys: &'static str,
+    pub one_hand: &'static str,
 }

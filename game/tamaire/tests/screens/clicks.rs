@@ -4,14 +4,15 @@ use crate::window::*;
 use app_shell::Pads;
 use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
+use fuwafuwa::Vec3;
 use std::fs;
 use tamaire::game::{Game, Notice, Screen};
 use tamaire::input::{Action, InputSource};
 use tamaire::platform::{Files, Sound};
 use tamaire::settings::Settings;
 use tamaire::words::Language;
-use tamaire_play::Route;
 use tamaire_play::replay::VERSION;
+use tamaire_play::{BotKind, Route};
 
 #[test]
 fn menus_lead_from_title_to_round_and_back() {
@@ -72,7 +73,9 @@ fn round_is_won_saved_watched_raced_and_deleted() {
 
     click(&mut window, "Race it");
     assert_eq!(screen(&window), Screen::Play);
-    frames(&mut window, 5);
+    window.key_down(Key::ArrowLeft);
+    frames(&mut window, 6);
+    window.key_up(Key::ArrowLeft);
     let ghost = |window: &Window| {
         let ghost = window.state().game.bout.session.ghost();
         ghost.map(|round| round.frames().len())
@@ -142,7 +145,10 @@ fn round_is_won_saved_watched_raced_and_deleted() {
         game(&mut window).notices.clear();
         click(&mut window, way);
         assert_eq!(screen(&window), Screen::Play);
-        frames(&mut window, 65);
+        // A ghost begins with the player.
+        window.key_down(Key::ArrowLeft);
+        frames(&mut window, 66);
+        window.key_up(Key::ArrowLeft);
         assert!(
             notices(&window).contains("was changed"),
             "{way}: {}",
@@ -302,6 +308,7 @@ fn mouse_and_keys_move_two_hands() {
             "a new hand starts at the position of the level: {at:?} {start:?}"
         );
     }
+    pick_up(&mut window);
     window.key_down(Key::D);
     window.hover_at(egui::pos2(480.0, 100.0));
     frames(&mut window, 20);
@@ -428,4 +435,129 @@ fn sticky_keys_hold_until_pressed_again() {
     let second = x(&window);
     frames(&mut window, 10);
     assert_eq!(x(&window), second);
+}
+
+/// Position of a point of the world on the screen.
+fn on_screen(window: &Window, at: Vec3) -> egui::Pos2 {
+    let view = window.state().game.bout.view;
+    view.expect("the world is visible").to_screen(at)
+}
+
+#[test]
+fn pointer_over_body_at_start_breaks_nothing() {
+    let mut window = window(Files::nowhere());
+    for level in ["classic", "biscuit", "core", "cat"] {
+        start(&mut window, level);
+        for restarts in [false, true] {
+            if restarts {
+                press(&mut window, Key::R);
+            }
+            let middle = window.state().game.bout.effects.feelings[0].middle;
+            let at = on_screen(&window, middle);
+            window.hover_at(at);
+            frames(&mut window, 1);
+            window.hover_at(at + egui::vec2(3.0, 2.0));
+            let mut splits = 0;
+            for _ in 0..90 {
+                frames(&mut window, 1);
+                let round = window.state().game.bout.round();
+                splits += round.split_points().len();
+            }
+            let game = game(&mut window);
+            let hand = &game.bout.round().hands()[0];
+            assert_eq!(splits, 0, "{level}: the body has a crack");
+            let gap = game.bout.round().distance_to_bodies(hand.position) - hand.radius;
+            assert!(gap > 0.0, "{level}: {gap} m");
+            assert!(!game.controls.players.is_picked_up(0), "{level}");
+        }
+    }
+    // As soon as the pointer has been at the hand, the hand follows and may push.
+    start(&mut window, "classic");
+    pick_up(&mut window);
+    let middle = window.state().game.bout.effects.feelings[0].middle;
+    let at = on_screen(&window, middle);
+    window.hover_at(at);
+    frames(&mut window, 60);
+    let after = window.state().game.bout.effects.feelings[0].middle;
+    assert!((after - middle).length() > 0.1, "{middle} {after}");
+}
+
+#[test]
+fn clock_starts_with_the_first_push() {
+    let mut window = window(Files::nowhere());
+    start(&mut window, "classic");
+    frames(&mut window, 90);
+    let seconds = |window: &Window| window.state().game.bout.round().seconds();
+    assert_eq!((seconds(&window), ticks(&window) >= 90), (0.0, true));
+    window.key_down(Key::ArrowUp);
+    frames(&mut window, 31);
+    let shown = seconds(&window);
+    assert!((0.4..0.6).contains(&shown), "{shown} s");
+    window.key_up(Key::ArrowUp);
+    frames(&mut window, 30);
+    assert!(seconds(&window) > shown + 0.4, "the clock goes on");
+    press(&mut window, Key::R);
+    frames(&mut window, 30);
+    assert_eq!(seconds(&window), 0.0);
+}
+
+#[test]
+fn two_players_screen_parts_the_keyboard() {
+    let mut window = window(Files::nowhere());
+    click(&mut window, "Two players");
+    window.get_by_label("First hand: mouse, or ↑ ← ↓ →");
+    window.get_by_label("Second hand: W A S D");
+    click(&mut window, "Play as two");
+    assert_eq!(screen(&window), Screen::Levels);
+    click(&mut window, "Classic");
+    frames(&mut window, 2);
+    let before = hand_targets(&window);
+    assert_eq!(before.len(), 2);
+    window.key_down(Key::ArrowUp);
+    window.key_down(Key::S);
+    frames(&mut window, 20);
+    let after = hand_targets(&window);
+    assert!(after[0].y > before[0].y + 0.2, "{before:?} {after:?}");
+    assert!(after[1].y < before[1].y - 0.2, "{before:?} {after:?}");
+    window.key_up(Key::ArrowUp);
+    window.key_up(Key::S);
+    game(&mut window).go(Screen::Title);
+    frames(&mut window, 2);
+    click(&mut window, "Two players");
+    click(&mut window, "Play alone");
+    assert_eq!(game(&mut window).controls.players.second(), None);
+}
+
+#[test]
+fn goals_are_listed_in_pause_and_ticked_off() {
+    let mut window = window(Files::nowhere());
+    start(&mut window, "biscuit");
+    press(&mut window, Key::P);
+    window.get_by_label_contains("in the basket: 0 of");
+    window.get_by_label("shave it to fit");
+    window.get_by_label("at least 40 pieces");
+    press(&mut window, Key::P);
+    drive(game(&mut window), BotKind::Shave, |game| {
+        game.bout.round().progress().pieces < 40
+    });
+    press(&mut window, Key::P);
+    window.get_by_label("✓ at least 40 pieces");
+    start(&mut window, "core");
+    drive(game(&mut window), BotKind::Shave, |game| {
+        game.bout.round().progress().kept > 0.98
+    });
+    press(&mut window, Key::P);
+    window.get_by_label("× squeeze it in whole");
+    window.get_by_label("keep at least 90 %");
+}
+
+#[test]
+fn large_text_is_as_large_as_promised() {
+    let mut window = open(Files::nowhere(), egui::vec2(1280.0, 800.0), 0.25);
+    for (size, zoom) in [(1.0, 1.0), (1.6, 1.6), (0.8, 0.8)] {
+        game(&mut window).settings.text_size = size;
+        frames(&mut window, 3);
+        let ratio = window.ctx.zoom_factor();
+        assert!((ratio - zoom).abs() < 1e-3, "{size}: {ratio}");
+    }
 }

@@ -20,13 +20,15 @@ fn place(window: &Window, action: Action) -> Option<Rect> {
     button.map(|button| button.rect)
 }
 
-/// Starts a round in which a finger holds the hand at a world position [m].
+/// Starts a round in which a finger takes the hand to a world position [m].
 fn held(level: &str, at: Vec3) -> Window {
     let mut window = window(Files::nowhere());
     start(&mut window, level);
-    let on_screen = on_screen(&window, at);
-    touch(&mut window, 0, Start, on_screen);
-    touch(&mut window, 0, Move, on_screen + vec2(1.0, 0.0));
+    let hand = on_screen(&window, goal(&window, 0));
+    touch(&mut window, 0, Start, hand);
+    touch(&mut window, 0, Move, hand + vec2(1.0, 0.0));
+    let there = on_screen(&window, at);
+    touch(&mut window, 0, Move, there);
     frames(&mut window, 2);
     assert_eq!(window.state().game.controls.means, InputMethod::Fingers);
     window
@@ -73,8 +75,10 @@ fn two_fingers_move_two_hands() {
     let second = window.state().game.controls.players.second();
     assert_eq!(second, Some(InputSource::Finger));
     let first = goal(&window, 0);
-    for step in 0..60 {
-        let at = on_screen(&window, Vec3::new(0.2 + 0.005 * step as f32, -0.6, 0.0));
+    let start = goal(&window, 1);
+    let end = Vec3::new(0.5, -0.6, 0.0);
+    for step in 0..=60 {
+        let at = on_screen(&window, start.lerp(end, step as f32 / 60.0));
         touch(&mut window, 1, if step == 0 { Start } else { Move }, at);
     }
     let Vec3 { x, y, .. } = goal(&window, 1);
@@ -121,4 +125,21 @@ fn mouse_shows_only_pause_and_retry_buttons() {
     let buttons = &window.state().game.controls.buttons;
     let actions = buttons.iter().map(|button| button.action);
     assert_eq!(actions.collect::<Vec<_>>(), [Action::Pause, Action::Retry]);
+}
+
+#[test]
+fn finger_on_body_at_start_breaks_nothing() {
+    let mut window = window(Files::nowhere());
+    start(&mut window, "biscuit");
+    let middle = window.state().game.bout.effects.feelings[0].middle;
+    let at = on_screen(&window, middle);
+    touch(&mut window, 0, Start, at);
+    for _ in 0..90 {
+        touch(&mut window, 0, Move, at);
+        let round = window.state().game.bout.round();
+        assert!(round.split_points().is_empty(), "the body has a crack");
+    }
+    let round = window.state().game.bout.round();
+    let hand = &round.hands()[0];
+    assert!(round.distance_to_bodies(hand.position) > hand.radius);
 }

@@ -351,7 +351,10 @@ fn round_3d_is_won_saved_watched_and_raced() {
     assert_eq!(files.replays().len(), 1);
 
     click(&mut window, "Race it");
-    frames(&mut window, 30);
+    // The ghost begins with the player.
+    window.key_down(Key::ArrowLeft);
+    frames(&mut window, 31);
+    window.key_up(Key::ArrowLeft);
     let is_space = |round: &AnyRound| matches!(round, AnyRound::Space(_));
     let ghost = |window: &Window| {
         let ghost = window.state().game.bout.session.ghost();

@@ -96,11 +96,59 @@ fn instructions_name_current_device_and_time_out() {
     table.devices[1].axes = vec![0.0; 2];
     table.frames(2);
     assert!(tells(&table.window, "buttons 10 11") && tells(&table.window, "buttons 7 8"));
+    // Before the first push, nobody is stuck.
+    game(&mut table.window).retry();
     for _ in 0..25 {
         game(&mut table.window).update(2.0);
     }
     table.frames(2);
     assert!(!tells(&table.window, "buttons"));
+}
+
+#[test]
+fn instructions_return_when_player_is_stuck() {
+    let mut window = in_space();
+    game(&mut window).settings.reduced_motion = true;
+    let push = |window: &mut Window, key| {
+        window.key_down(key);
+        frames(window, 2);
+        wait(window, 15);
+        window.key_up(key);
+        frames(window, 2);
+    };
+    push(&mut window, Key::ArrowDown);
+    push(&mut window, Key::Q);
+    let lines = |window: &Window| ["Move", "Up and down"].map(|line| tells(window, line));
+    assert_eq!(lines(&window), [false, false]);
+    for _ in 0..11 {
+        game(&mut window).update(2.0);
+    }
+    frames(&mut window, 1);
+    assert_eq!(lines(&window), [true, true], "no progress for 20 s");
+    push(&mut window, Key::Q);
+    assert_eq!(lines(&window), [true, false]);
+    // A win does not teach what was not done.
+    let level = game(&mut window).bout.round().level().clone();
+    let won = tamaire_play::Outcome {
+        ticks: 600,
+        route: tamaire_play::Route::Squeeze,
+        kept: 1.0,
+        inside: 1.0,
+        pieces: 1,
+        lost: 0,
+    };
+    game(&mut window).records.note(&level, &won);
+    start(&mut window, "hoop");
+    assert_eq!(lines(&window), [true, false]);
+    // Two rounds that are given up are the same failure.
+    push(&mut window, Key::ArrowDown);
+    assert_eq!(lines(&window), [false, false]);
+    for _ in 0..2 {
+        press(&mut window, Key::R);
+        push(&mut window, Key::ArrowDown);
+    }
+    press(&mut window, Key::R);
+    assert!(lines(&window)[1], "the hoop needs the hand to be raised");
 }
 
 #[test]

@@ -144,7 +144,12 @@ pub fn drive(game: &mut Game, kind: BotKind, goes_on: impl Fn(&Game) -> bool) {
             game.bout.round().frames().len() < 60 * 60,
             "the round takes longer than a minute"
         );
-        game.controls.devices.pointer = game.bout.round().ask(&mut bot).goal(0);
+        let round = game.bout.round();
+        game.controls.devices.pointer = match game.controls.players.is_picked_up(0) {
+            true => round.ask(&mut bot).goal(0),
+            // The player picks up the hand first.
+            false => Some(round.hands()[0].target),
+        };
         game.update(DEFAULT_TICK);
     }
     game.controls.devices.pointer = None;
@@ -177,4 +182,15 @@ pub fn touch(window: &mut Window, finger: u64, phase: egui::TouchPhase, pos: egu
         }
     }
     frames(window, 1);
+}
+
+/// Moves the mouse to the first hand, which then follows it.
+pub fn pick_up(window: &mut Window) {
+    let view = window.state().game.bout.view.expect("the world is visible");
+    let at = view.to_screen(hand_targets(window)[0]);
+    window.hover_at(at);
+    frames(window, 1);
+    window.hover_at(at + egui::vec2(1.0, 0.0));
+    frames(window, 1);
+    assert!(game(window).controls.players.is_picked_up(0));
 }

@@ -21,8 +21,31 @@ fn goal(players: &mut Players, devices: &Devices, manner: &InputMapping) -> Opti
 }
 
 fn goals(players: &mut Players, devices: &Devices, manner: &InputMapping) -> [Option<Vec3>; 2] {
-    let frame = players.frame(devices, &Bindings::default(), manner, &HANDS, DEFAULT_TICK);
+    let frame = players.frame(
+        devices,
+        &Bindings::default(),
+        manner,
+        &hands(&HANDS),
+        DEFAULT_TICK,
+    );
     [frame.goal(0), frame.goal(1)]
+}
+
+/// Hands with a radius of 0.1 m, far from all bodies.
+fn hands(targets: &[Vec3]) -> Hands<'_> {
+    Hands {
+        targets,
+        radius: 0.1,
+        distance_to_bodies: &|_| f32::INFINITY,
+    }
+}
+
+/// Players whose hands follow a pointer at once.
+fn picked_up() -> Players {
+    Players {
+        is_picked_up: [true; PLAYERS],
+        ..Players::default()
+    }
 }
 
 /// Creates a stick with this deflection to the right and upwards.
@@ -48,7 +71,7 @@ fn assert_near(found: Option<Vec3>, expected: [f32; 2]) {
 
 #[test]
 fn mouse_position_is_kept_until_next_round() {
-    let mut players = Players::default();
+    let mut players = picked_up();
     let mut devices = Devices::default();
     assert_eq!(goal(&mut players, &devices, &MANNER), None);
     devices.pointer = Some(Vec3::new(0.7, -0.3, 0.0));
@@ -108,7 +131,7 @@ fn stick_has_dead_zone_and_speed_grows_with_deflection() {
 
 #[test]
 fn still_position_stick_leaves_goal_to_other_devices() {
-    let mut players = Players::default();
+    let mut players = picked_up();
     let mut devices = with_sticks(vec![stick(1, [0.0; 2]), stick(2, [0.0; 2])]);
     assert_eq!(goal(&mut players, &devices, &PLACES), None, "at rest");
     devices.sticks.devices[1] = stick(2, [1.0, 0.0]);
@@ -130,10 +153,10 @@ fn away_in_space_is_away_from_camera_and_lift_raises_hand() {
         turn: Some(std::f32::consts::FRAC_PI_2),
         ..MANNER
     };
-    let hands = [Vec3::new(0.0, 0.5, 0.0)];
+    let targets = [Vec3::new(0.0, 0.5, 0.0)];
     let goal = |devices: &Devices| {
         let bindings = Bindings::default();
-        let frame = Players::default().frame(devices, &bindings, &manner, &hands, DEFAULT_TICK);
+        let frame = picked_up().frame(devices, &bindings, &manner, &hands(&targets), DEFAULT_TICK);
         frame.goal(0).expect("a goal")
     };
     let check = |found: Vec3, expected: [f32; 3]| {
@@ -172,9 +195,15 @@ fn wanted_height_is_kept_when_goal_cannot_follow() {
     };
     // The body holds the hand down, and the target position may be only a limited distance from the hand.
     let here = Vec3::new(0.0, 0.5, 0.0);
-    let mut players = Players::default();
+    let mut players = picked_up();
     let mut goal = |devices: &Devices, manner: &InputMapping| {
-        let frame = players.frame(devices, &Bindings::default(), manner, &[here], DEFAULT_TICK);
+        let frame = players.frame(
+            devices,
+            &Bindings::default(),
+            manner,
+            &hands(&[here]),
+            DEFAULT_TICK,
+        );
         frame.goal(0).expect("a goal")
     };
     let lift = |lift| Devices {
@@ -247,7 +276,13 @@ fn each_device_belongs_to_one_player() {
     // In a level with a single hand, the second player has no hand, and so no target position is set.
     players.join(InputSource::Keys);
     let bindings = Bindings::default();
-    let frame = players.frame(&devices, &bindings, &MANNER, &HANDS[..1], DEFAULT_TICK);
+    let frame = players.frame(
+        &devices,
+        &bindings,
+        &MANNER,
+        &hands(&HANDS[..1]),
+        DEFAULT_TICK,
+    );
     assert_eq!(frame.goal(1), None);
 }
 
@@ -266,4 +301,152 @@ fn screen_buttons_belong_to_player_with_pointer() {
     let [first, second] = goals(&mut players, &devices, &manner);
     assert!(first.expect("it rises").y > HANDS[0].y);
     assert!(second.is_none_or(|stays| stays == HANDS[1]), "{second:?}");
+}
+
+#[test]
+fn hand_glides_to_pointer_until_picked_up() {
+    let mut players = Players::default();
+    let mut here = HANDS[0];
+    let mut devices = Devices {
+        pointer: Some(Vec3::new(0.0, 0.0, 0.0)),
+        ..Devices::default()
+    };
+    let mut follow = |players: &mut Players, devices: &Devices| {
+        let targets = [here];
+        let bindings = Bindings::default();
+        let frame = players.frame(devices, &bindings, &MANNER, &hands(&targets), DEFAULT_TICK);
+        let before = here;
+        here = frame.goal(0).expect("a goal");
+        (here - before).length()
+    };
+    // The mouse moved in the first tick only. The hand still arrives, 1 m away, in less than a second.
+    let step = GLIDE * DEFAULT_TICK;
+    let mut ticks = 0;
+    while !players.is_picked_up(0) {
+        let moved = follow(&mut players, &devices);
+        assert!(moved < step + 1e-3 || players.is_picked_up(0), "{moved} m");
+        devices.pointer = None;
+        ticks += 1;
+        assert!(ticks < 60, "the hand never arrives");
+    }
+    // From now on, the hand is wherever the pointer is.
+    devices.pointer = Some(Vec3::new(1.0, 0.5, 0.0));
+    assert!(follow(&mut players, &devices) > 1.0);
+    players.start();
+    devices.pointer = Some(Vec3::new(-1.0, 0.5, 0.0));
+    assert!(follow(&mut players, &devices) < step + 1e-3, "a new round");
+}
+
+#[test]
+fn hand_stops_before_body_until_picked_up() {
+    // A body occupies x > -0.5, and the pointer lies on it. A stick that sets positions does the same.
+    let wall = |at: Vec3| (-0.5 - at.x).abs();
+    let on_body = Devices {
+        pointer: Some(Vec3::new(0.3, 0.0, 0.0)),
+        ..Devices::default()
+    };
+    let deflected = with_sticks(vec![stick(1, [0.2, 0.0])]);
+    for (devices, manner) in [(&on_body, &MANNER), (&deflected, &PLACES)] {
+        let mut players = Players::default();
+        let mut here = HANDS[0];
+        let mut follow = |players: &mut Players, devices: &Devices| {
+            let surroundings = Hands {
+                targets: &[here],
+                radius: 0.1,
+                distance_to_bodies: &wall,
+            };
+            let bindings = Bindings::default();
+            let frame = players.frame(devices, &bindings, manner, &surroundings, DEFAULT_TICK);
+            here = frame.goal(0).expect("a goal");
+            here
+        };
+        for _ in 0..120 {
+            follow(&mut players, devices);
+        }
+        let stopped = follow(&mut players, devices);
+        assert!((-0.66..=-0.63 + 1e-3).contains(&stopped.x), "{stopped}");
+        // The pointer touches the hand and may then push the body.
+        let at_hand = Devices {
+            pointer: Some(stopped + Vec3::new(0.05, 0.0, 0.0)),
+            ..Devices::default()
+        };
+        follow(&mut players, &at_hand);
+        assert!(players.is_picked_up(0));
+        assert_near(Some(follow(&mut players, &on_body)), [0.3, 0.0]);
+    }
+}
+
+#[test]
+fn pointer_does_not_take_hand_from_keys() {
+    let mut players = Players::default();
+    let bindings = Bindings::default();
+    let mut follow = |devices: &Devices, here: Vec3| {
+        let targets = [here];
+        let frame = players.frame(devices, &bindings, &MANNER, &hands(&targets), DEFAULT_TICK);
+        frame.goal(0).expect("a goal")
+    };
+    let key = Devices {
+        keys: [Key::D].into(),
+        ..Devices::default()
+    };
+    let here = follow(&key, HANDS[0]);
+    assert!(here.x > HANDS[0].x);
+    let bumped = Devices {
+        pointer: Some(Vec3::new(1.0, 0.8, 0.0)),
+        ..Devices::default()
+    };
+    let there = follow(&bumped, here);
+    assert!((there - here).length() < GLIDE * DEFAULT_TICK + 1e-3);
+    let back = follow(&key, there);
+    let aside = follow(&Devices::default(), back);
+    assert_eq!(aside, back, "a key ends the gliding");
+}
+
+#[test]
+fn arrows_and_letters_move_two_hands() {
+    let mut players = Players::default();
+    players.join(InputSource::LetterKeys);
+    let devices = Devices {
+        keys: [Key::ArrowRight, Key::W].into(),
+        ..Devices::default()
+    };
+    let step = PACE * DEFAULT_TICK;
+    let [first, second] = goals(&mut players, &devices, &MANNER);
+    assert_near(first, [-1.0 + step, 0.0]);
+    assert_near(second, [-1.0, 0.5 + step]);
+    // Alone again, both halves of the keyboard move the first hand.
+    players.join(InputSource::Keys);
+    assert_eq!(players.second(), None);
+    let side = step * 0.5_f32.sqrt();
+    assert_near(
+        goal(&mut Players::default(), &devices, &MANNER),
+        [-1.0 + side, side],
+    );
+}
+
+#[test]
+fn hand_glides_around_body() {
+    // A ball with a radius of 0.4 m around the origin reaches across the straight way.
+    let ball = |at: Vec3| (at.length() - 0.4).abs();
+    let devices = Devices {
+        pointer: Some(Vec3::new(0.3, 0.6, 0.0)),
+        ..Devices::default()
+    };
+    let mut players = Players::default();
+    let mut here = HANDS[0];
+    for tick in 0.. {
+        let surroundings = Hands {
+            targets: &[here],
+            radius: 0.1,
+            distance_to_bodies: &ball,
+        };
+        let bindings = Bindings::default();
+        let frame = players.frame(&devices, &bindings, &MANNER, &surroundings, DEFAULT_TICK);
+        if players.is_picked_up(0) {
+            break;
+        }
+        here = frame.goal(0).expect("a goal");
+        assert!(here.length() > 0.4 + 0.1, "{here}");
+        assert!(tick < 240, "the hand stays at {here}");
+    }
 }
