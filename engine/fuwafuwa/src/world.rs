@@ -325,16 +325,16 @@ impl<D: Dim> World<D> {
             .filter(is_pushed)
             .filter(|pair| pair.impulse.pressed > 0.0);
         let handled = handled.filter_map(|pair| Some((pair.body, pair.piece(&self.bodies)?)));
-        let captives = self.nearby.captives.list.iter();
-        let captives = captives.map(|captive| &self.nearby.spheres.list[captive.sphere]);
-        let captives = captives.map(|sphere| (sphere.body, sphere.piece));
+        let embedded = self.nearby.embedded.list.iter();
+        let embedded = embedded.map(|embedded| &self.nearby.spheres.list[embedded.sphere]);
+        let embedded = embedded.map(|sphere| (sphere.body, sphere.piece));
         let is_pushed = |knife: &&KnifeState| {
             let holder = self.rigids.get(knife.holder);
             holder.is_ok_and(|holder| holder.pushes())
         };
         let pushed = self.knives.iter().filter(is_pushed);
         let cut = pushed.flat_map(|knife| knife.held(&self.bodies));
-        let handled: Vec<Hit> = handled.chain(captives).chain(cut).collect();
+        let handled: Vec<Hit> = handled.chain(embedded).chain(cut).collect();
         let fallen = fall_asleep(&mut self.bodies, &motions, &handled, self.config.tick);
         let events = fallen.iter().map(|&(body, piece)| Event::FellAsleep {
             body: self.bodies.id(body),
@@ -351,7 +351,7 @@ impl<D: Dim> World<D> {
             self.rigids.at_mut(slot).wake();
         }
         if !hits.is_empty() {
-            self.nearby.nodes.look_again();
+            self.nearby.nodes.request_full_search();
         }
     }
 

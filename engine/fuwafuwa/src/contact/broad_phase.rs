@@ -29,7 +29,7 @@ use crate::soft_body::{SoftBodies, SoftBody};
 use crate::topology::changes::Changes;
 pub use contact_sphere::{ContactSphere, SphereId, mean};
 pub use contact_spheres::Spheres;
-pub use embedded_spheres::{Captives, EmbeddedSphere};
+pub use embedded_spheres::{EmbeddedSphere, EmbeddedSpheres};
 pub use known_impulse::Impulse;
 pub use node_pairs::{NodePair, NodePairs};
 pub use rigid_contacts::{Passed, RigidTouch, RigidTouches};
@@ -61,17 +61,17 @@ pub struct Nearby {
     pub rigids: RigidTouches,
     /// Spheres embedded in another piece.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub captives: Captives,
+    pub embedded: EmbeddedSpheres,
     /// Remaining time of the tick [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     left: f32,
-    /// Whether `captives` is up to date: embedded spheres are searched once per tick.
+    /// Whether `embedded` is up to date: embedded spheres are searched once per tick.
     #[cfg_attr(feature = "serde", serde(skip))]
-    knows_captives: bool,
+    knows_embedded: bool,
 }
 
 hash_state! {
-    struct Nearby { nodes, spheres, pairs, rigids } skip { captives, left, knows_captives }
+    struct Nearby { nodes, spheres, pairs, rigids } skip { embedded, left, knows_embedded }
 }
 
 impl Nearby {
@@ -85,8 +85,8 @@ impl Nearby {
         if let Some(numbers) = numbers {
             renumber(&mut self.pairs.list, &numbers);
         }
-        self.captives = Captives::default();
-        (self.left, self.knows_captives) = (duration, false);
+        self.embedded = EmbeddedSpheres::default();
+        (self.left, self.knows_embedded) = (duration, false);
     }
 
     /// Updates the lists after a tear of a body. `changes` holds the nodes and elements that the tear added,
@@ -95,7 +95,7 @@ impl Nearby {
         self.nodes.tear(slot, &changes.nodes);
         let changed = &mut self.pairs.changed;
         self.spheres.tear(slot, body, changes, changed);
-        self.captives.tear(&self.spheres);
+        self.embedded.tear(&self.spheres);
     }
 
     /// Removes a soft body from all lists, so that another body may take its slot.
@@ -169,15 +169,15 @@ impl Nearby {
     pub fn follow<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies, duration: f32) {
         self.nodes.follow(bodies, rigids, duration, self.left);
         let changed = self.pairs.follow(&mut self.spheres, bodies);
-        if !self.knows_captives {
-            self.captives.find(&self.spheres, &self.pairs.list, bodies);
-            self.knows_captives = true;
+        if !self.knows_embedded {
+            self.embedded.find(&self.spheres, &self.pairs.list, bodies);
+            self.knows_embedded = true;
         }
         if changed {
             let paired = self.pairs.list.iter().flat_map(|pair| pair.spheres);
-            let captives = self.captives.list.iter();
-            let captives = captives.flat_map(|captive| [captive.sphere, captive.exit]);
-            self.spheres.note_close(paired.chain(captives));
+            let embedded = self.embedded.list.iter();
+            let embedded = embedded.flat_map(|embedded| [embedded.sphere, embedded.exit]);
+            self.spheres.note_close(paired.chain(embedded));
         }
         self.spheres.take_velocities(bodies);
     }

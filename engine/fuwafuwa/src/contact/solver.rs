@@ -80,9 +80,9 @@ impl Contacts {
         self.find_spheres(bodies, nearby, duration, &mut hits.pieces);
         self.exits.clear();
         let (spheres, motion) = (&nearby.spheres, &mut self.motion);
-        let exits = nearby.captives.list.iter();
+        let exits = nearby.embedded.list.iter();
         let exits = exits
-            .filter_map(|captive| EscapeContact::new(captive, bodies, spheres, motion, duration));
+            .filter_map(|embedded| EscapeContact::new(embedded, bodies, spheres, motion, duration));
         self.exits.extend(exits);
         find_hands(rigids, duration, &mut self.hands);
         let woken = find_free::<D>(rigids, &nearby.rigids, duration, &mut self.free);
@@ -192,7 +192,7 @@ impl Contacts {
         let has_layers = bodies.iter().any(|body| body.layers() != Layers::default());
         let layers = |sphere: &ContactSphere| bodies.at(sphere.body).layers();
         let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
-        let (all, captives) = (&nearby.spheres, &nearby.captives);
+        let (all, embedded) = (&nearby.spheres, &nearby.embedded);
         // Borrows the centres as a slice: indexing the `IndexVec` would load its pointer again for each pair.
         let centres = all.centres.as_slice();
         let widths = bodies.iter().map(|body| body.grid().voxel_size());
@@ -222,7 +222,7 @@ impl Contacts {
                     continue;
                 }
                 let touching = both[0].radius + both[1].radius;
-                if captives.is_inside(pair.spheres, both) {
+                if embedded.is_inside(pair.spheres, both) {
                     // Treats an embedded sphere as having met the surface from outside. So once the sphere
                     // has escaped, contacts push it away and do not pull it in again.
                     pair.met_in_front = true;

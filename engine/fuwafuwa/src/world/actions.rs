@@ -356,7 +356,7 @@ impl<D: Dim> World<D> {
         match body {
             BodyHandle::Soft(body) => {
                 self.displace(body, |body| body.set_layers(layers))?;
-                self.nearby.nodes.look_again();
+                self.nearby.nodes.request_full_search();
                 Ok(())
             }
             BodyHandle::Rigid(rigid) => self.change_rigid(rigid, |body| {
@@ -516,7 +516,7 @@ impl<D: Dim> World<D> {
         self.wake(&leaning);
         let leaning = leaning_on_rigid(self.rigids.get(rigid)?, &self.bodies);
         self.nearby.remove_rigid(rigid.slot());
-        self.nearby.nodes.look_again();
+        self.nearby.nodes.request_full_search();
         self.wake_leaning(leaning, vec![was, is]);
         Ok(())
     }

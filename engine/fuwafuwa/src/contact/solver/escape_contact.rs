@@ -23,13 +23,13 @@ impl EscapeContact {
     /// Returns the escape contact that moves an embedded sphere to the front of its exit. Returns `None` if
     /// neither sphere can move, or if a position or velocity is not finite or too large.
     pub fn new<D: Dim>(
-        captive: &EmbeddedSphere,
+        embedded: &EmbeddedSphere,
         bodies: &SoftBodies<D>,
         spheres: &Spheres,
         motion: &mut Motion,
         duration: f32,
     ) -> Option<Self> {
-        let [a, b] = [captive.sphere, captive.exit];
+        let [a, b] = [embedded.sphere, embedded.exit];
         let both = [&spheres.list[a], &spheres.list[b]];
         // Length of a vector, at least 1e-9, because the code below divides by it.
         let length_of = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
