@@ -323,7 +323,7 @@ impl<D: Dim> World<D> {
         let is_pushed = |pair: &&NodePair| self.rigids.at(pair.rigid).pushes();
         let handled = pairs
             .filter(is_pushed)
-            .filter(|pair| pair.impulse.pressed > 0.0);
+            .filter(|pair| pair.impulse.normal_impulse > 0.0);
         let handled = handled.filter_map(|pair| Some((pair.body, pair.piece(&self.bodies)?)));
         let embedded = self.nearby.embedded.list.iter();
         let embedded = embedded.map(|embedded| &self.nearby.spheres.list[embedded.sphere]);
@@ -341,7 +341,7 @@ impl<D: Dim> World<D> {
             piece,
         });
         self.events.extend(events);
-        let handled = self.contacts.handled(&self.rigids);
+        let handled = self.contacts.pushed_bodies(&self.rigids);
         fall_asleep_rigid(&mut self.rigids, &handled, self.config.tick);
     }
 
@@ -379,7 +379,7 @@ impl<D: Dim> World<D> {
             vec![false; pieces].into()
         };
         let mut touching: IndexVec<_, IndexVec<_, bool>> = self.bodies.slots().map(none).collect();
-        for (body, piece) in self.nearby.pressed(&self.bodies) {
+        for (body, piece) in self.nearby.pressed_pieces(&self.bodies) {
             // `pressed` reads the contacts of the last substep. If a new body has since replaced the body in
             // its arena slot, a contact may name a piece that the new body does not have; it is skipped.
             if let Some(touches) = touching[body].get_mut(piece.index()) {

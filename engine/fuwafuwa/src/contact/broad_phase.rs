@@ -32,7 +32,7 @@ pub use contact_spheres::Spheres;
 pub use embedded_spheres::{EmbeddedSphere, EmbeddedSpheres};
 pub use known_impulse::Impulse;
 pub use node_pairs::{NodePair, NodePairs};
-pub use rigid_contacts::{Passed, RigidTouch, RigidTouches};
+pub use rigid_contacts::{PressedContact, RigidContactPoint, RigidContactPoints};
 pub use sphere_pair::MARGIN;
 use sphere_pair::renumber;
 pub use sphere_pairs::SpherePairs;
@@ -58,7 +58,7 @@ pub struct Nearby {
     /// Pairs of contact spheres.
     pub pairs: SpherePairs,
     /// Contact points between rigid bodies.
-    pub rigids: RigidTouches,
+    pub rigids: RigidContactPoints,
     /// Spheres embedded in another piece.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub embedded: EmbeddedSpheres,
@@ -184,13 +184,13 @@ impl Nearby {
 
     /// Iterates over the pieces on which a contact presses, that is, with a normal impulse above 0. Each item
     /// is a body slot and a piece number. A piece may occur several times.
-    pub fn pressed<D: Dim>(
+    pub fn pressed_pieces<D: Dim>(
         &self,
         bodies: &SoftBodies<D>,
     ) -> impl Iterator<Item = (BodySlot, PieceId)> {
-        let nodes = { self.nodes.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);
+        let nodes = { self.nodes.list.iter() }.filter(|pair| pair.impulse.normal_impulse > 0.0);
         let nodes = nodes.filter_map(|pair| Some((pair.body, pair.piece(bodies)?)));
-        let pairs = { self.pairs.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);
+        let pairs = { self.pairs.list.iter() }.filter(|pair| pair.impulse.normal_impulse > 0.0);
         let pairs = pairs.flat_map(|pair| pair.both(&self.spheres.list));
         nodes.chain(pairs.map(|sphere| (sphere.body, sphere.piece)))
     }

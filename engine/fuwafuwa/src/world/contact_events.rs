@@ -180,7 +180,7 @@ impl<D: Dim> World<D> {
                 [point, apart * (1.0 / apart.length().max(1e-9))]
             });
         }
-        for touch in &self.nearby.rigids.passed {
+        for touch in &self.nearby.rigids.pressed {
             let objects = { touch.both }.map(|slot| ObjectRef::RigidBody(self.rigids.id(slot)));
             sums.add(objects, touch.impulse, touch.speed, || {
                 [touch.at, touch.normal]

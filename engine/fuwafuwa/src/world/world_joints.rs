@@ -17,7 +17,7 @@ impl<D: Dim> World<D> {
     pub fn add_joint(&mut self, joint: Joint<D>) -> Result<JointHandle, Error> {
         let mut joint = JointState::from(&joint);
         joint.check()?;
-        joint.hold(&self.bodies, &self.rigids)?;
+        joint.attach(&self.bodies, &self.rigids)?;
         self.wake_ends(&joint);
         Ok(self.joints.insert(joint))
     }
@@ -54,7 +54,10 @@ impl<D: Dim> World<D> {
         &self,
         joint: JointHandle,
     ) -> Result<Option<[D::Vector; 2]>, Error> {
-        let positions = self.joints.get(joint)?.places(&self.bodies, &self.rigids);
+        let positions = self
+            .joints
+            .get(joint)?
+            .anchor_positions(&self.bodies, &self.rigids);
         Ok(positions.map(|both| both.map(D::Vector::from_vec3)))
     }
 

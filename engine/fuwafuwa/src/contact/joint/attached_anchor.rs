@@ -39,7 +39,7 @@ pub struct AnchorState {
     /// Velocity [m/s].
     pub velocity: Vec3,
     /// Inverse effective mass matrix, by rows [1/kg]: velocity change of the anchor per impulse.
-    pub yields: [Vec3; 3],
+    pub inverse_mass: [Vec3; 3],
     pub is_asleep: bool,
 }
 
@@ -75,7 +75,7 @@ impl AttachedAnchor {
 
     /// Moves an anchor on a rigid body or in the world to a world-space point [m]. Does nothing to an anchor
     /// on a soft body.
-    pub fn stand_at(&mut self, at: Vec3, rigids: &RigidBodies) {
+    pub fn move_to(&mut self, at: Vec3, rigids: &RigidBodies) {
         match self {
             Self::Position(place) => *place = at,
             Self::RigidBody(id, own) => {
@@ -88,7 +88,7 @@ impl AttachedAnchor {
     }
 
     /// Returns the present state of the anchor; `None` if its body or all of the attached voxels are gone.
-    pub fn grip<D: Dim>(
+    pub fn state<D: Dim>(
         &self,
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
@@ -97,7 +97,7 @@ impl AttachedAnchor {
             Self::Position(at) => Some(AnchorState {
                 at: *at,
                 velocity: Vec3::ZERO,
-                yields: [Vec3::ZERO; 3],
+                inverse_mass: [Vec3::ZERO; 3],
                 is_asleep: false,
             }),
             Self::RigidBody(id, own) => {
@@ -106,7 +106,7 @@ impl AttachedAnchor {
                 Some(AnchorState {
                     at: rigid.position() + lever,
                     velocity: rigid.velocity_at(lever),
-                    yields: Vec3::AXES.map(|way| rigid.gain(lever, way)),
+                    inverse_mass: Vec3::AXES.map(|way| rigid.gain(lever, way)),
                     is_asleep: rigid.is_asleep(),
                 })
             }
@@ -125,12 +125,12 @@ impl AttachedAnchor {
                     gain += body.inverse_masses()[node] * share * share;
                     is_asleep &= body.pieces().sleeps(node);
                 }
-                let mut yields = [Vec3::ZERO; 3];
-                (0..D::N).for_each(|axis| yields[axis][axis] = gain);
+                let mut inverse_mass = [Vec3::ZERO; 3];
+                (0..D::N).for_each(|axis| inverse_mass[axis][axis] = gain);
                 Some(AnchorState {
                     at,
                     velocity,
-                    yields,
+                    inverse_mass,
                     is_asleep,
                 })
             }
@@ -138,7 +138,7 @@ impl AttachedAnchor {
     }
 
     /// Applies an impulse [N s] to the body at the anchor.
-    pub fn push<D: Dim>(
+    pub fn apply_impulse<D: Dim>(
         &self,
         bodies: &mut SoftBodies<D>,
         rigids: &mut RigidBodies,
