@@ -333,7 +333,7 @@ impl<D: Dim> World<D> {
             holder.is_ok_and(|holder| holder.pushes())
         };
         let pushed = self.knives.iter().filter(is_pushed);
-        let cut = pushed.flat_map(|knife| knife.held(&self.bodies));
+        let cut = pushed.flat_map(|knife| knife.pieces_inside(&self.bodies));
         let handled: Vec<Hit> = handled.chain(embedded).chain(cut).collect();
         let fallen = fall_asleep(&mut self.bodies, &motions, &handled, self.config.tick);
         let events = fallen.iter().map(|&(body, piece)| Event::FellAsleep {

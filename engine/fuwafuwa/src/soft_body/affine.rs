@@ -42,7 +42,7 @@ impl<D: Dim> SoftBody<D> {
     /// inverse.
     pub(crate) fn elastic_part(&self, id: ElementId, element: &Element) -> [Vec3; 3] {
         let (_, gradient) = self.deformation(element);
-        let Some(undone) = self.state.blocks.plastic_inverse(id) else {
+        let Some(undone) = self.state.batches.plastic_inverse(id) else {
             return gradient;
         };
         let column = |j: usize| Vec3::new(undone[0][j], undone[1][j], undone[2][j]);

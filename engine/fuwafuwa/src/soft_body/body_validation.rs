@@ -25,7 +25,7 @@ impl<D: Dim> SoftBody<D> {
             "states",
         )?;
         ensure(
-            self.state.blocks.is_sound(&self.topology.mesh),
+            self.state.batches.is_sound(&self.topology.mesh),
             "states of elements",
         )?;
         let pull = self.state.gravity_scale;
@@ -61,8 +61,8 @@ impl<D: Dim> SoftBody<D> {
             ..
         } = &self.topology;
         let asleep = |id: ElementId| pieces.list[pieces.of_element(id)].asleep;
-        let (blocks, plasticities) = (&mut self.state.blocks, plasticities(materials));
-        blocks.restore(mesh, grid, &plasticities, asleep);
+        let (batches, plasticities) = (&mut self.state.batches, plasticities(materials));
+        batches.restore(mesh, grid, &plasticities, asleep);
         self.rebuild();
     }
 

@@ -26,7 +26,7 @@ impl<D: Dim> SoftBody<D> {
             let all: Vec<ElementId> = self.topology.mesh.elements().map(|(id, _)| id).collect();
             self.settle(&all);
         }
-        self.state.blocks.evaluate(&self.state.ahead);
+        self.state.batches.evaluate(&self.state.ahead);
         let gravity = Row::from(gravity) * self.state.gravity_scale;
         let kick = VelocityUpdate {
             nodes: &self.cache.awake,
@@ -34,7 +34,7 @@ impl<D: Dim> SoftBody<D> {
             duration,
             gravity,
         };
-        self.state.blocks.kick(&kick, &mut self.state.velocity);
+        self.state.batches.kick(&kick, &mut self.state.velocity);
     }
 
     /// Adds to velocities the change that an acceleration field [m/s²] causes in `duration` [s].
@@ -66,12 +66,12 @@ impl<D: Dim> SoftBody<D> {
                 .expect("`settle` is called with live elements");
             let wide = |rows: [Vec3; 3]| rows.map(|row| row.as_dvec3());
             let (rotation, deformation) = (
-                self.state.blocks.rotation(id),
+                self.state.batches.rotation(id),
                 self.elastic_part(id, element),
             );
             if let Some(turned) = rotation_if_far_from(&wide(rotation), &wide(deformation)) {
                 self.state
-                    .blocks
+                    .batches
                     .set_rotation(id, turned.map(|part| part as f32));
             }
         }

@@ -38,8 +38,8 @@ impl<D: Dim> SoftBody<D> {
             // A removed piece is also marked as asleep, so that no code treats it as moving.
             (piece.removed, piece.asleep) = (true, true);
         }
-        let blocks = &mut self.state.blocks;
-        blocks.update(&topology.mesh, &topology.grid, &elements, &[], |_| false);
+        let batches = &mut self.state.batches;
+        batches.update(&topology.mesh, &topology.grid, &elements, &[], |_| false);
         self.find_breakable(&nodes);
         self.cache.awake_is_stale = true;
         self.refresh_awake();

@@ -29,8 +29,8 @@ impl<D: Dim> SoftBody<D> {
                 };
             }
         }
-        let blocks = &mut self.state.blocks;
-        blocks.set_asleep(&self.topology.mesh, &elements, asleep);
+        let batches = &mut self.state.batches;
+        batches.set_asleep(&self.topology.mesh, &elements, asleep);
         let pieces = self.topology.pieces.list.iter_mut().zip(marked.iter());
         for (piece, _) in pieces.filter(|(_, marked)| **marked) {
             piece.asleep = asleep;

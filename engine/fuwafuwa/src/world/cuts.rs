@@ -50,7 +50,7 @@ impl<D: Dim> World<D> {
             let Ok(holder) = self.rigids.get(knife.holder) else {
                 continue;
             };
-            for cut in knife.pass(&self.bodies, holder, round) {
+            for cut in knife.end_sweep(&self.bodies, holder, round) {
                 let body = self
                     .bodies
                     .get_mut(cut.body)
