@@ -334,12 +334,14 @@ impl<D: Dim> SoftBody<D> {
     /// this bound; the rate supplies the remaining damping of the slowest mode.
     pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
         let ratio = self.cache.properties.damping;
-        let slow = self.cache.properties.slow * self.topology.stiffness_scale.sqrt();
-        let fast = self.cache.properties.fastest_swing * self.topology.stiffness_scale.sqrt();
+        let slowest =
+            self.cache.properties.slowest_frequency * self.topology.stiffness_scale.sqrt();
+        let fastest =
+            self.cache.properties.fastest_frequency * self.topology.stiffness_scale.sqrt();
         let step = f64::from(duration);
-        let most = LEAD_USED * (4.0 / (fast * fast) - step * step) / (2.0 * step);
-        let lead = (2.0 * ratio / slow).min(most).max(0.0);
-        let rate = 2.0 * slow * (ratio - 0.5 * lead * slow).max(0.0);
+        let max_lead = LEAD_USED * (4.0 / (fastest * fastest) - step * step) / (2.0 * step);
+        let lead = (2.0 * ratio / slowest).min(max_lead).max(0.0);
+        let rate = 2.0 * slowest * (ratio - 0.5 * lead * slowest).max(0.0);
         (lead as f32, rate as f32)
     }
 

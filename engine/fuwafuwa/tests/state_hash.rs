@@ -531,7 +531,7 @@ const COVERED: [&str; 14] = [
     "rigids.slots.item.reactions.contact",
     "bodies.slots.item.state.damage",
     "bodies.slots.item.state.cooldowns.points",
-    "bodies.slots.item.state.blocks.undone",
+    "bodies.slots.item.state.batches.plastic_inverses",
     "bodies.slots.item.topology.mesh.free_nodes",
     "events.ContactForce.point",
     "touching",

@@ -37,7 +37,7 @@ pub use sphere_pair::MARGIN;
 use sphere_pair::renumber;
 pub use sphere_pairs::SpherePairs;
 pub use supported_bodies::{
-    bounds_of, leaning_on_body, leaning_on_pieces, leaning_on_rigid, sleeping_in,
+    bounds_of, sleeping_in, supported_by_body, supported_by_pieces, supported_by_rigid,
 };
 
 /// Speed above which a moving object wakes a sleeper that it touches [m/s]: five times the sleep speed

@@ -88,7 +88,7 @@ impl Contacts {
         find_kinematic(rigids, duration, &mut self.kinematic);
         let woken = find_dynamic::<D>(rigids, &nearby.rigids, duration, &mut self.dynamic);
         hits.rigids.extend(woken);
-        hits.settle();
+        hits.sort();
         hits
     }
 
@@ -151,7 +151,8 @@ impl Contacts {
                         hits.rigids.push(pair.rigid);
                     }
                 }
-                let inverse_mass = body.inverse_masses()[node] + rigid.yields_near(at.xyz());
+                let inverse_mass =
+                    body.inverse_masses()[node] + rigid.max_inverse_effective_mass(at.xyz());
                 // A sleeping node acts as a fixed obstacle for a dynamic rigid body. Skips the node's contacts
                 // with all other rigid bodies.
                 if body.inverse_masses()[node] == 0.0 && !rigid.is_dynamic() {
@@ -328,9 +329,11 @@ impl Contacts {
             for_each(&mut self.kinematic, backwards, |row| {
                 let [own, other] = row.both.map(|slot| Row::from(rigids.at(slot).velocity()));
                 let change = row.contact.solve::<D>(own - other);
-                rigids.at_mut(row.both[0]).push(change.xyz(), duration);
+                rigids
+                    .at_mut(row.both[0])
+                    .apply_contact_impulse(change.xyz(), duration);
                 let other = rigids.at_mut(row.both[1]);
-                other.push((-change).xyz(), duration);
+                other.apply_contact_impulse((-change).xyz(), duration);
             });
             for_each(&mut self.dynamic, backwards, |row| {
                 row.solve::<D>(rigids, duration)
@@ -401,11 +404,11 @@ impl Hits {
         if !pieces.is_empty() || !rigids.is_empty() {
             self.pieces.extend(pieces);
             self.rigids.extend(rigids);
-            self.settle();
+            self.sort();
         }
     }
 
-    fn settle(&mut self) {
+    fn sort(&mut self) {
         self.pieces.sort_unstable();
         self.pieces.dedup();
         self.rigids.sort_unstable();

@@ -65,8 +65,8 @@ pub struct ElementBatches<D: Dim> {
     /// Indices of the batches without elements. The key is the number of nodes per element, and whether each
     /// lane has class data of its own.
     empty: BTreeMap<(u32, bool), Vec<u32>>,
-    /// Start in `class_data` of the data of each element class that has batches of its own, by the index of the
-    /// class.
+    /// Start in `class_data` of the data of each element class that has batches of its own, by the index of
+    /// the class.
     class_data_starts: BTreeMap<u32, u32>,
     class_data: Vec<f32>,
     /// Class data of pooled batches; each value is stored once for each lane.
@@ -343,24 +343,29 @@ impl<D: Dim> ElementBatches<D> {
     }
 
     /// Adds the velocity change of one substep by elastic forces and gravity to velocities [m/s].
-    pub fn kick(&self, kick: &VelocityUpdate, velocity: &mut [Row]) {
-        threads::map(threads::rows(kick.nodes, [velocity]), |rows| {
-            on_widest_lanes!(simd => self.kick_by(simd, kick, rows));
+    pub fn update_velocities(&self, update: &VelocityUpdate, velocity: &mut [Row]) {
+        threads::map(threads::rows(update.nodes, [velocity]), |rows| {
+            on_widest_lanes!(simd => self.update_velocities_by(simd, update, rows));
         });
     }
 
     #[inline(always)]
-    fn kick_by<S: Simd>(&self, simd: S, kick: &VelocityUpdate, rows: RowChunk<Row, 1>) {
+    fn update_velocities_by<S: Simd>(
+        &self,
+        simd: S,
+        update: &VelocityUpdate,
+        rows: RowChunk<Row, 1>,
+    ) {
         let [velocity] = rows.lists;
         for &id in rows.nodes {
             let node = id.index();
-            let inverse_mass = kick.inverse_mass[node];
+            let inverse_mass = update.inverse_mass[node];
             if inverse_mass == 0.0 {
                 continue;
             }
-            let acceleration = self.force_by(simd, id) * inverse_mass + kick.gravity;
+            let acceleration = self.force_by(simd, id) * inverse_mass + update.gravity;
             let velocity = &mut velocity[node - rows.first];
-            *velocity += acceleration * kick.duration;
+            *velocity += acceleration * update.duration;
         }
     }
 
@@ -429,7 +434,7 @@ mod tests {
         }
         let nodes: Vec<NodeId> = mesh.nodes().map(|(id, _)| id).collect();
         let inverse_mass: Vec<f32> = (0..position.len()).map(|id| (id % 7) as f32).collect();
-        let kick = VelocityUpdate {
+        let update = VelocityUpdate {
             nodes: &nodes,
             inverse_mass: &inverse_mass,
             duration: 0.001,
@@ -437,9 +442,9 @@ mod tests {
         };
         let mut velocities = [position.clone(), position];
         let [by_best, by_other] = &mut velocities;
-        wide.kick(&kick, by_best);
+        wide.update_velocities(&update, by_best);
         for rows in threads::rows(&nodes, [by_other]) {
-            simd.vectorize(|| other.kick_by(simd, &kick, rows));
+            simd.vectorize(|| other.update_velocities_by(simd, &update, rows));
         }
         let [by_best, by_other] = velocities.map(|rows| {
             let bits = rows.iter().flat_map(|row| row.to_array().map(f32::to_bits));

@@ -43,8 +43,8 @@ pub fn element_state<D: Dim>(
     element_state_plastic(law, elasticity, &IDENTITY, element_class, size, positions)
 }
 
-/// Returns the state of an element that is `size` [m] wide and has its nodes at `positions` [m]. `plastic_inverse` is
-/// the plastic inverse G of [`crate::soft_body::plasticity`].
+/// Returns the state of an element that is `size` [m] wide and has its nodes at `positions` [m].
+/// `plastic_inverse` is the plastic inverse G of [`crate::soft_body::plasticity`].
 ///
 /// # Panics
 /// If the number of positions is not the number of nodes of the element class.

@@ -69,7 +69,7 @@ pub fn elastic_part(deformation: &Matrix, plastic_inverse: &Matrix) -> Matrix {
     product(deformation, plastic_inverse)
 }
 
-/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation gradient with the plastic inverse `plastic_inverse`.
+/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation gradient with a plastic inverse.
 pub fn stress_after<D: Dim>(
     elasticity: Elasticity,
     deformation: &Matrix,
@@ -86,7 +86,7 @@ pub fn stress_after<D: Dim>(
     total
 }
 
-/// Returns the elastic force [N] that an element with the plastic inverse `plastic_inverse` exerts on each of its
+/// Returns the elastic force [N] that an element with a plastic inverse exerts on each of its
 /// nodes. The element is `size` [m] wide; `positions` are those of its nodes [m].
 ///
 /// # Panics
@@ -109,7 +109,7 @@ pub fn forces_after<D: Dim>(
     forces_of_stress(elasticity, &stress, element_class, size, positions)
 }
 
-/// Returns the plastic inverse after plastic flow; `plastic_inverse` is the plastic inverse before. The two differ
+/// Returns the plastic inverse after plastic flow. It differs from the `plastic_inverse` before the flow
 /// only if the elastic strain exceeds the yield strain.
 pub fn flow<D: Dim>(
     plasticity: Plasticity,

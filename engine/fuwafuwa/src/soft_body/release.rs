@@ -134,7 +134,7 @@ impl<D: Dim> SoftBody<D> {
                 .topology
                 .mesh
                 .element(id)
-                .expect("seated elements are alive");
+                .expect("changed elements are alive");
             self.topology.pieces.adopt(id, &element.nodes);
             self.cache.exposed_faces[id] = 0;
         }
@@ -146,7 +146,7 @@ impl<D: Dim> SoftBody<D> {
         for (id, plastic_inverse) in plastic_inverses {
             batches.set_plastic_inverse(id, plastic_inverse);
         }
-        self.settle(&new);
+        self.reset_rotations(&new);
         let changed_elements = changed_elements
             .iter()
             .filter_map(|&id| self.topology.mesh.element(id));

@@ -40,7 +40,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Records the positions of all nodes, at the start of a tick.
-    pub(crate) fn note_before(&mut self) {
+    pub(crate) fn store_start_positions(&mut self) {
         let (mesh, before) = (&self.topology.mesh, &mut self.cache.before);
         let both = |(id, &row): (NodeId, &Row)| match mesh.is_alive(id) {
             true => (mesh.node(id).at, row),

@@ -334,7 +334,7 @@ impl<D: Dim> CellHierarchy<D> {
     /// The result equals a hierarchy built from scratch. A cell of which some voxels remain is never removed:
     /// the remaining voxels touched the removed ones at open points, so they are cells of level 0, which
     /// require the coarser cell.
-    pub(crate) fn take_out(
+    pub(crate) fn remove_voxels(
         &mut self,
         grid: &VoxelGrid<D>,
         connectivity: &Connectivity<D>,

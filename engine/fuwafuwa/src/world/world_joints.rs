@@ -62,13 +62,13 @@ impl<D: Dim> World<D> {
     }
 
     /// Removes broken joints, and reports an event for each.
-    pub(super) fn part_joints(&mut self, broken: Vec<JointHandle>) {
+    pub(super) fn remove_broken_joints(&mut self, broken: Vec<JointHandle>) {
         for joint in broken {
             // `broken` may list a joint twice: it broke when velocities were solved, and again when positions
             // were corrected. The second removal fails and is ignored.
-            if let Ok(parted) = self.joints.remove(joint) {
+            if let Ok(removed) = self.joints.remove(joint) {
                 self.events.push(Event::JointBroke { joint });
-                self.wake_ends(&parted);
+                self.wake_ends(&removed);
             }
         }
     }

@@ -189,8 +189,9 @@ impl Site {
 /// Table for [`Site::is_held_to`]: a mask and a rotation for each offset of the second voxel from the first,
 /// up to two voxels per axis. The entry of the offset (x, y, z) has the index (x + 2) + 5 (y + 2) + 25 (z +
 /// 2). The mask selects, among the 27 voxels around the first voxel, those that touch both voxels. If the two
-/// voxels are adjacent, the mask selects only the second voxel, because [`Site::connected_voxels`] includes a sphere's
-/// own voxel. The rotation aligns the bits of the second sphere's `connected_voxels` with those of the first.
+/// voxels are adjacent, the mask selects only the second voxel, because [`Site::connected_voxels`] includes a
+/// sphere's own voxel. The rotation aligns the bits of the second sphere's `connected_voxels` with those of
+/// the first.
 const COMMON: [(u32, u32); 125] = common();
 
 const fn common() -> [(u32, u32); 125] {

@@ -252,8 +252,8 @@ impl Spheres {
         }
     }
 
-    /// Adds to `crack_face_pairs` the pairs of a sphere with those near spheres of its piece that no elastic force
-    /// keeps apart from it. Tests only spheres for which `applies` is true.
+    /// Adds to `crack_face_pairs` the pairs of a sphere with those near spheres of its piece that no elastic
+    /// force keeps apart from it. Tests only spheres for which `applies` is true.
     fn find_crack_face_pairs<D: Dim>(
         &mut self,
         id: SphereId,

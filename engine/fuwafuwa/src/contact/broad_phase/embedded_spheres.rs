@@ -288,8 +288,8 @@ type Extents = IndexVec<BodySlot, IndexVec<PieceId, Extent>>;
 struct Extent {
     /// Number of elements.
     count: u32,
-    /// Whether the piece has inner elements, which have no bare face. [`EmbeddedSpheres::find`] clears the flag if
-    /// the box contains no sphere of a smaller piece.
+    /// Whether the piece has inner elements, which have no bare face. [`EmbeddedSpheres::find`] clears the
+    /// flag if the box contains no sphere of a smaller piece.
     has_inner: bool,
     /// Low corner of the box around the centres of the piece's contact spheres [m].
     low: Row,

@@ -106,7 +106,7 @@ impl AttachedAnchor {
                 Some(AnchorState {
                     at: rigid.position() + lever,
                     velocity: rigid.velocity_at(lever),
-                    inverse_mass: Vec3::AXES.map(|way| rigid.gain(lever, way)),
+                    inverse_mass: Vec3::AXES.map(|way| rigid.velocity_per_impulse(lever, way)),
                     is_asleep: rigid.is_asleep(),
                 })
             }
@@ -117,16 +117,16 @@ impl AttachedAnchor {
                     return None;
                 }
                 let share = 1.0 / nodes.len() as f32;
-                let (mut at, mut velocity, mut gain) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+                let (mut at, mut velocity, mut mean_inverse_mass) = (Vec3::ZERO, Vec3::ZERO, 0.0);
                 let mut is_asleep = true;
                 for node in nodes {
                     at += body.positions()[node].xyz() * share;
                     velocity += body.velocities()[node].xyz() * share;
-                    gain += body.inverse_masses()[node] * share * share;
+                    mean_inverse_mass += body.inverse_masses()[node] * share * share;
                     is_asleep &= body.pieces().sleeps(node);
                 }
                 let mut inverse_mass = [Vec3::ZERO; 3];
-                (0..D::N).for_each(|axis| inverse_mass[axis][axis] = gain);
+                (0..D::N).for_each(|axis| inverse_mass[axis][axis] = mean_inverse_mass);
                 Some(AnchorState {
                     at,
                     velocity,
@@ -149,7 +149,7 @@ impl AttachedAnchor {
             Self::RigidBody(id, own) => {
                 if let Ok(rigid) = rigids.get_mut(*id) {
                     let lever = rigid.rotation().apply(*own);
-                    rigid.kick(impulse, lever);
+                    rigid.apply_impulse(impulse, lever);
                 }
             }
             Self::Soft(id, corners) => {
@@ -159,8 +159,8 @@ impl AttachedAnchor {
                 let nodes: Vec<NodeId> = nodes(body, corners).collect();
                 let share = Row::from(impulse * (1.0 / nodes.len() as f32));
                 for node in nodes {
-                    let gain = share * body.inverse_masses()[node];
-                    body.velocities_mut()[node] += gain;
+                    let change = share * body.inverse_masses()[node];
+                    body.velocities_mut()[node] += change;
                 }
             }
         }
@@ -191,14 +191,14 @@ impl AttachedAnchor {
             (Self::Soft(own, _), JointEnd::Soft { body, .. }) => own == body,
             _ => false,
         };
-        let is_somewhere = match self {
+        let is_valid = match self {
             Self::Position(at) | Self::RigidBody(_, at) => {
                 let is_near = at.to_array().iter().all(|k| k.abs() <= 4.0 * FARTHEST);
                 is_near && at.to_array()[D::N..].iter().all(|k| *k == 0.0)
             }
             Self::Soft(_, corners) => !corners.is_empty(),
         };
-        is_of_it && is_somewhere
+        is_of_it && is_valid
     }
 }
 

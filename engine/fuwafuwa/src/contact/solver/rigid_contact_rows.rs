@@ -140,7 +140,7 @@ fn touch<D: Dim>(
             hits.extend(sleepers.map(|k| slots[k]));
         }
         let inverse_mass = |way: Vec3| {
-            let each = [0, 1].map(|k: usize| both[k].yields(levers[k], way));
+            let each = [0, 1].map(|k: usize| both[k].inverse_effective_mass(levers[k], way));
             each[0] + each[1]
         };
         let normal_inverse_mass = inverse_mass(manifold.normal);
@@ -244,10 +244,10 @@ impl DynamicContact {
         let impulse = impulse.xyz();
         rigids
             .at_mut(self.both[0])
-            .push_at(impulse, self.levers[0], duration);
+            .apply_contact_impulse_at(impulse, self.levers[0], duration);
         let back = -impulse;
         rigids
             .at_mut(self.both[1])
-            .push_at(back, self.levers[1], duration);
+            .apply_contact_impulse_at(back, self.levers[1], duration);
     }
 }

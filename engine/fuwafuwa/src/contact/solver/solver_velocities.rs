@@ -10,8 +10,8 @@ use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
 use glam::Vec3;
 
-/// Number of nodes in a chunk of `SolverVelocities`. A chunk with any node in contact is copied as a whole. Larger
-/// chunks copy more unused nodes; smaller ones cost more tests.
+/// Number of nodes in a chunk of `SolverVelocities`. A chunk with any node in contact is copied as a whole.
+/// Larger chunks copy more unused nodes; smaller ones cost more tests.
 const NODES_PER_CHUNK: usize = 16;
 
 /// Copy of the velocities of nodes in contact [m/s]. The fourth component is the inverse mass [1/kg], so that
@@ -153,7 +153,9 @@ fn velocity((mover, lever): (RigidSlot, Vec3), rigids: &RigidBodies) -> Row {
 /// rare.
 #[inline(never)]
 fn push((mover, lever): (RigidSlot, Vec3), rigids: &mut RigidBodies, impulse: Row, duration: f32) {
-    rigids.at_mut(mover).push_at(impulse.xyz(), lever, duration);
+    rigids
+        .at_mut(mover)
+        .apply_contact_impulse_at(impulse.xyz(), lever, duration);
 }
 
 /// Returns the row of a node of a body, given the row of the first node.

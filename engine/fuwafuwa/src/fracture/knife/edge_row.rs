@@ -162,7 +162,8 @@ fn solve_row<D: Dim>(
 ) {
     for (way, direction) in ways.into_iter().enumerate() {
         // If neither the tissue nor the holder can move, the division by 0 drives the impulse to its limit.
-        let total_inverse_mass = row.inverse_mass + holder.yields(row.lever, direction);
+        let total_inverse_mass =
+            row.inverse_mass + holder.inverse_effective_mass(row.lever, direction);
         let speed = slip(row, body, holder).dot(direction);
         let least = if way == 0 { 0.0 } else { -row.limits[way] };
         let wanted = (row.impulse[way] + speed / total_inverse_mass).clamp(least, row.limits[way]);
@@ -176,6 +177,6 @@ fn solve_row<D: Dim>(
             let change = Row::from(push) * (weight * body.inverse_masses()[node]);
             body.velocities_mut()[node] += change;
         }
-        holder.push_at(-push, row.lever, duration);
+        holder.apply_contact_impulse_at(-push, row.lever, duration);
     }
 }

@@ -38,8 +38,8 @@ pub struct Batch {
     /// Index of the first node of the batch in `ElementBatches::nodes`. The forces of the batch begin at D::N
     /// times this index in `ElementBatches::forces`.
     pub first_node: u32,
-    /// Start of the class data in `ElementBatches::numbers`, or in `ElementBatches::pooled_class_data` for a pooled
-    /// batch.
+    /// Start of the class data in `ElementBatches::class_data`, or in `ElementBatches::pooled_class_data` for
+    /// a pooled batch.
     pub class_data_start: u32,
     /// Number of values in the class data.
     pub class_data_len: u32,

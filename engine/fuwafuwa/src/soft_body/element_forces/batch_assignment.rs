@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 impl<D: Dim> ElementBatches<D> {
-    /// Updates the batches after a remodelling. Takes out the elements `removed`. Adds the elements `changed_elements`,
+    /// Updates the batches after a remodelling. Removes the elements `removed`. Adds `changed_elements`,
     /// or assigns them again if a batch already contains them. `asleep` returns whether an element sleeps.
     /// The cost is proportional to the number of these elements.
     pub fn update(
@@ -28,7 +28,7 @@ impl<D: Dim> ElementBatches<D> {
         asleep: impl Fn(ElementId) -> bool,
     ) {
         let pending = |&id: &ElementId| {
-            let element = mesh.element(id).expect("seated elements are alive");
+            let element = mesh.element(id).expect("changed elements are alive");
             let material = grid.material(mesh.first_voxel(element));
             self.pending(id, element, material, asleep(id))
         };
@@ -297,7 +297,7 @@ impl<D: Dim> ElementBatches<D> {
         flow.copied().flatten().map(|_| PlasticInverseLanes::none())
     }
 
-    /// Returns the start in `self.class_data` of the data of an element class. Appends the data `class_data` if the
+    /// Returns the start in `self.class_data` of the data of an element class. Appends `class_data` if the
     /// class has none there yet.
     fn class_data_start(&mut self, class: u32, class_data: &[f32]) -> u32 {
         let all = &mut self.class_data;

@@ -59,7 +59,7 @@ impl<D: Dim> Mesh<D> {
             nodes: nodes.to_vec(),
         };
         let old = self.elements[id].replace(element);
-        let old = old.expect("seated elements are alive");
+        let old = old.expect("changed elements are alive");
         for &node in nodes {
             self.carriers[node] += 1;
         }

@@ -118,7 +118,7 @@ impl<D: Dim> Mesh<D> {
 
     /// Removes elements, and the nodes that no other element has. Returns the ids of these nodes. The caller
     /// must update grid, connectivity and cell hierarchy.
-    pub(crate) fn take_out(
+    pub(crate) fn remove_elements(
         &mut self,
         connectivity: &Connectivity<D>,
         elements: &[ElementId],
