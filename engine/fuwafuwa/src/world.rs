@@ -153,7 +153,7 @@ impl<D: Dim> World<D> {
                 self.damp(duration);
             }
             self.integrate_velocities(duration, hooks);
-            let hits = self.solve_contacts(duration);
+            let hits = self.solve_constraints(duration);
             self.integrate_positions(duration);
             self.wake(&hits.pieces);
             self.wake_rigids(&hits.rigids);
@@ -174,10 +174,10 @@ impl<D: Dim> World<D> {
     pub fn substeps(&self) -> u32 {
         let longest = self.bodies.iter().map(SoftBody::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
-        let asked = (f64::from(self.config.tick) / longest - 1e-6).ceil() as u32;
-        let most = self.config.most_in_tick();
+        let required = (f64::from(self.config.tick) / longest - 1e-6).ceil() as u32;
+        let max = self.config.max_in_tick();
         let usual = self.config.in_tick(60.0 * f64::from(DEFAULT_SUBSTEPS));
-        asked.clamp(usual.min(most), most)
+        required.clamp(usual.min(max), max)
     }
 
     fn start_tick(&mut self) {
@@ -267,7 +267,7 @@ impl<D: Dim> World<D> {
     /// Solves joints, knives and contacts, and applies their impulses to the velocities. Returns the sleeping
     /// pieces and rigid bodies that were hit. They act as immovable walls in this substep and wake at its
     /// end.
-    fn solve_contacts(&mut self, duration: f32) -> Hits {
+    fn solve_constraints(&mut self, duration: f32) -> Hits {
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
         nearby.follow(bodies, rigids, duration);

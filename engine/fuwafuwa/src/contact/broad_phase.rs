@@ -64,14 +64,14 @@ pub struct Nearby {
     pub embedded: EmbeddedSpheres,
     /// Remaining time of the tick [s].
     #[cfg_attr(feature = "serde", serde(skip))]
-    left: f32,
+    remaining_time: f32,
     /// Whether `embedded` is up to date: embedded spheres are searched once per tick.
     #[cfg_attr(feature = "serde", serde(skip))]
     knows_embedded: bool,
 }
 
 hash_state! {
-    struct Nearby { nodes, spheres, pairs, rigids } skip { embedded, left, knows_embedded }
+    struct Nearby { nodes, spheres, pairs, rigids } skip { embedded, remaining_time, knows_embedded }
 }
 
 impl Nearby {
@@ -86,7 +86,7 @@ impl Nearby {
             renumber(&mut self.pairs.list, &numbers);
         }
         self.embedded = EmbeddedSpheres::default();
-        (self.left, self.knows_embedded) = (duration, false);
+        (self.remaining_time, self.knows_embedded) = (duration, false);
     }
 
     /// Updates the lists after a tear of a body. `changes` holds the nodes and elements that the tear added,
@@ -160,14 +160,15 @@ impl Nearby {
     /// Subtracts a substep of `duration` [s] from the remaining time of the tick, and the motion in that
     /// substep from the search margins. No node moved farther than `distance` [m] in the substep.
     pub fn pass(&mut self, duration: f32, distance: f32) {
-        self.left -= duration;
+        self.remaining_time -= duration;
         self.nodes.pass(distance);
         self.pairs.pass(duration, distance);
     }
 
     /// Updates all lists to the present positions, for a substep of `duration` [s].
     pub fn follow<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies, duration: f32) {
-        self.nodes.follow(bodies, rigids, duration, self.left);
+        self.nodes
+            .follow(bodies, rigids, duration, self.remaining_time);
         let changed = self.pairs.follow(&mut self.spheres, bodies);
         if !self.knows_embedded {
             self.embedded.find(&self.spheres, &self.pairs.list, bodies);
@@ -177,7 +178,7 @@ impl Nearby {
             let paired = self.pairs.list.iter().flat_map(|pair| pair.spheres);
             let embedded = self.embedded.list.iter();
             let embedded = embedded.flat_map(|embedded| [embedded.sphere, embedded.exit]);
-            self.spheres.note_close(paired.chain(embedded));
+            self.spheres.set_close(paired.chain(embedded));
         }
         self.spheres.take_velocities(bodies);
     }

@@ -295,7 +295,7 @@ impl Spheres {
 
     /// Sets the close spheres: those in pairs or escape contacts, whose centres and velocities are updated in
     /// each substep.
-    pub fn note_close(&mut self, close: impl Iterator<Item = SphereId>) {
+    pub fn set_close(&mut self, close: impl Iterator<Item = SphereId>) {
         let was_close = self.is_close.clone();
         self.is_close.fill(false);
         close.for_each(|id| self.is_close[id] = true);
