@@ -226,7 +226,7 @@ mod tests {
         let momentum = |spin: Vec3, rotation: Rotation| {
             let axes = rotation.axes().into_iter().zip(inertia.moments.to_array());
             axes.fold(Vec3::ZERO, |sum, (axis, moment)| {
-                sum + axis * (moment * axis.dot(angular_velocity))
+                sum + axis * (moment * axis.dot(spin))
             })
         };
         let (mut spin, mut rotation) = (Vec3::new(0.1, 5.0, 0.0), Rotation::NONE);

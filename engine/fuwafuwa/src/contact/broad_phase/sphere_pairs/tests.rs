@@ -125,7 +125,7 @@ fn check<D: Dim>(n: usize) {
                 &bodies,
                 &format!("tick {tick}, substep {substep}"),
             );
-            spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
+            spheres.set_close(pairs.list.iter().flat_map(|pair| pair.spheres));
             let mut furthest = 0.0f32;
             let body = bodies.at_mut(BALL);
             for node in body.positions().ids() {
@@ -176,7 +176,7 @@ fn check_tears<D: Dim>(n: usize) {
                 &bodies,
                 &format!("tick {tick}, round {round}"),
             );
-            spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
+            spheres.set_close(pairs.list.iter().flat_map(|pair| pair.spheres));
             let count = 1 + below(12);
             let sides = (0..count).map(|_| {
                 let mut at = [0; 3];
