@@ -141,7 +141,10 @@ hash_state! {
 
 impl<D: Dim> Event<D> {
     /// Returns one [`Event::PieceDetached`] for each piece in `pieces`.
-    pub(crate) fn parted(body: SoftBodyHandle, pieces: &[PieceId]) -> impl Iterator<Item = Self> {
+    pub(crate) fn pieces_detached(
+        body: SoftBodyHandle,
+        pieces: &[PieceId],
+    ) -> impl Iterator<Item = Self> {
         pieces
             .iter()
             .map(move |&piece| Self::PieceDetached { body, piece })

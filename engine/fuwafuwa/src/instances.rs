@@ -25,7 +25,7 @@ fn instances_of<D: Dim>() {
         crate::VoxelGrid::<D>::heart as *const (),
         crate::VoxelGrid::<D>::flower as *const (),
         crate::VoxelGrid::<D>::solid_count as *const (),
-        crate::VoxelGrid::<D>::left_count as *const (),
+        crate::VoxelGrid::<D>::remaining_count as *const (),
         crate::topology::connectivity::Connectivity::<D>::new as *const (),
         crate::topology::connectivity::Connectivity::<D>::normalise as *const (),
         crate::topology::cell_hierarchy::CellHierarchy::<D>::new as *const (),

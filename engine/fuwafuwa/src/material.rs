@@ -158,7 +158,7 @@ impl Material {
     /// ε. In N dimensions, the elastic energy per volume is ½ N² (λ + 2µ/N) ε², with Lamé's parameters λ and
     /// µ. The kinetic energy per volume is ½ ρ N s²/4 ε'², because the mass, of density ρ, sits in the
     /// corners. Therefore Ω² = 4 N (λ + 2µ/N) / ρs².
-    pub(crate) fn voxel_swing(&self, dimensions: usize) -> f64 {
+    pub(crate) fn breathing_speed(&self, dimensions: usize) -> f64 {
         let axes = dimensions as f64;
         let stiffness = axes * self.elasticity.lame() + 2.0 * self.elasticity.shear_modulus();
         2.0 * (stiffness / f64::from(self.density)).sqrt()

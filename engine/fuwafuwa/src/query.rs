@@ -18,7 +18,7 @@ use crate::world::World;
 use bounding_tree::{distance_from, entry, overlap};
 use glam::Vec3;
 use intersection::{
-    is_in_block, nearest_on_segment, nearest_on_triangle, ray_meets_segment, ray_meets_triangle,
+    is_in_cell, nearest_on_segment, nearest_on_triangle, ray_meets_segment, ray_meets_triangle,
 };
 use query_cache::{BodyTrees, FilledCell, QueryTrees, TreeObject};
 use query_filter::QueryFilter;
@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// Number of ternary-search steps that find the point of a triangle closest to a shape. Each step shrinks the
 /// search interval to two thirds of its length. After 24 steps, 6·10⁻⁵ of a triangle edge remains, less than
 /// the relative tolerance 10⁻⁴ of the intersection tests.
-const NARROWINGS: usize = 24;
+const TERNARY_STEPS: usize = 24;
 
 /// Ray for [`World::ray_cast`].
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -123,7 +123,7 @@ impl<D: Dim> World<D> {
         let mut closest = Closest::within(max_distance)?;
         query.search(max_distance, cost, |rank, at_least| {
             match query.object(rank) {
-                Found::Rigid(rigid) => {
+                VisitedObject::Rigid(rigid) => {
                     if let Some((distance, normal)) = rigid.shape().ray(origin, direction) {
                         let distance = distance.max(at_least);
                         closest.consider(distance, [rank, 0], || {
@@ -131,7 +131,7 @@ impl<D: Dim> World<D> {
                         });
                     }
                 }
-                Found::Soft(trees) => {
+                VisitedObject::Soft(trees) => {
                     let surface = &trees.surface;
                     surface.tree.search(closest.limit, cost, |index, at_least| {
                         let facet = &surface.items[index];
@@ -144,7 +144,7 @@ impl<D: Dim> World<D> {
                         closest.limit
                     });
                 }
-                Found::Filtered => {}
+                VisitedObject::Filtered => {}
             }
             closest.limit
         });
@@ -170,7 +170,7 @@ impl<D: Dim> World<D> {
         let mut closest = Closest::within(max_distance)?;
         query.search(max_distance, cost, |rank, at_least| {
             match query.object(rank) {
-                Found::Rigid(rigid) => {
+                VisitedObject::Rigid(rigid) => {
                     let (gap, normal) = rigid.shape().distance(point);
                     let distance = gap.abs().max(at_least);
                     closest.consider(distance, [rank, 0], || {
@@ -178,7 +178,7 @@ impl<D: Dim> World<D> {
                         query.rigid_hit(rank, on_surface, normal, distance)
                     });
                 }
-                Found::Soft(trees) => {
+                VisitedObject::Soft(trees) => {
                     let surface = &trees.surface;
                     surface.tree.search(closest.limit, cost, |index, at_least| {
                         let facet = &surface.items[index];
@@ -190,7 +190,7 @@ impl<D: Dim> World<D> {
                         closest.limit
                     });
                 }
-                Found::Filtered => {}
+                VisitedObject::Filtered => {}
             }
             closest.limit
         });
@@ -211,7 +211,7 @@ impl<D: Dim> World<D> {
             0.0,
             |bounds| zero_if(contains(bounds, point)),
             |rank, _| {
-                if let Found::Rigid(rigid) = query.object(rank)
+                if let VisitedObject::Rigid(rigid) = query.object(rank)
                     && rigid.shape().distance(point).0 <= 0.0
                 {
                     found.extend(query.rigid_overlap(rank));
@@ -249,14 +249,14 @@ impl<D: Dim> World<D> {
         let cost = |bounds: &Bounds| zero_if(may_overlap(bounds));
         query.search(0.0, cost, |rank, _| {
             match query.object(rank) {
-                Found::Rigid(rigid) if shapes_overlap(rigid.shape(), &shape) => {
+                VisitedObject::Rigid(rigid) if shapes_overlap(rigid.shape(), &shape) => {
                     found.extend(query.rigid_overlap(rank));
                 }
-                Found::Soft(trees) => {
+                VisitedObject::Soft(trees) => {
                     let surface = &trees.surface;
                     surface.tree.search(0.0, cost, |index, _| {
                         let facet = &surface.items[index];
-                        if is_near::<D>(facet, &shape) {
+                        if facet_intersects::<D>(facet, &shape) {
                             found.extend(query.facet_overlap(trees.body, facet));
                         }
                         0.0
@@ -284,7 +284,7 @@ struct Query<'a, D: Dim> {
 }
 
 /// Object that the search of a query has reached.
-enum Found<'a> {
+enum VisitedObject<'a> {
     Rigid(&'a RigidState),
     Soft(&'a BodyTrees),
     /// Rejected by the filter.
@@ -321,23 +321,23 @@ impl<'a, D: Dim> Query<'a, D> {
         });
     }
 
-    /// Returns the object with index `rank` in the order of [`ObjectRef`]. Returns [`Found::Filtered`] if the
-    /// filter rejects the rigid body or the whole soft body.
-    fn object(&self, rank: usize) -> Found<'_> {
+    /// Returns the object with index `rank` in the order of [`ObjectRef`]. Returns
+    /// [`VisitedObject::Filtered`] if the filter rejects the rigid body or the whole soft body.
+    fn object(&self, rank: usize) -> VisitedObject<'_> {
         match self.trees.objects[rank] {
             TreeObject::Rigid(id) => {
                 let rigid = &self.world.rigids[id];
                 match self.filter.admits_rigid(rigid) {
-                    true => Found::Rigid(rigid),
-                    false => Found::Filtered,
+                    true => VisitedObject::Rigid(rigid),
+                    false => VisitedObject::Filtered,
                 }
             }
             TreeObject::Soft(index) => {
                 let trees = &self.trees.bodies[index as usize];
                 let body = &self.world.bodies[trees.body];
                 match self.filter.admits_body(trees.body, body) {
-                    true => Found::Soft(trees),
-                    false => Found::Filtered,
+                    true => VisitedObject::Soft(trees),
+                    false => VisitedObject::Filtered,
                 }
             }
         }
@@ -410,13 +410,13 @@ impl<'a, D: Dim> Query<'a, D> {
         let mut found = Vec::new();
         let trees = &self.trees;
         trees.tree.search(0.0, cost, |index, _| {
-            let Found::Soft(trees) = self.object(trees.bounded[index] as usize) else {
+            let VisitedObject::Soft(trees) = self.object(trees.bounded[index] as usize) else {
                 return 0.0;
             };
             let cells = trees.cells(&self.world.bodies[trees.body]);
             cells.tree.search(0.0, cost, |index, _| {
                 let cell = &cells.items[index];
-                if is_in_block::<D>(point, &cell.corners[..D::CORNERS]) {
+                if is_in_cell::<D>(point, &cell.corners[..D::CORNERS]) {
                     found.extend(self.cell_overlap(trees.body, cell));
                 }
                 0.0
@@ -526,7 +526,7 @@ fn nearest_on<D: Dim>(facet: &Facet, at: Vec3) -> Vec3 {
 
 /// Returns whether an exposed face intersects a shape. In 3D, a ternary search finds the segment across each
 /// triangle with the smallest gap to the shape. The gap has a single minimum, because the shape is convex.
-fn is_near<D: Dim>(facet: &Facet, shape: &Solid) -> bool {
+fn facet_intersects<D: Dim>(facet: &Facet, shape: &Solid) -> bool {
     let gap = |from: Vec3, to: Vec3| {
         let radius = 0.0;
         Solid::Capsule { from, to, radius }.gap(shape).0
@@ -536,18 +536,18 @@ fn is_near<D: Dim>(facet: &Facet, shape: &Solid) -> bool {
         return gap(a, b) <= 0.0;
     }
     triangles(facet.corners).into_iter().any(|[a, b, c]| {
-        let across = |share: f32| {
+        let gap_at = |share: f32| {
             let end = |to: Vec3| a + (to - a) * share;
             gap(end(b), end(c))
         };
         let (mut low, mut high) = (0.0f32, 1.0f32);
-        if across(low) <= 0.0 || across(high) <= 0.0 {
+        if gap_at(low) <= 0.0 || gap_at(high) <= 0.0 {
             return true;
         }
-        for _ in 0..NARROWINGS {
+        for _ in 0..TERNARY_STEPS {
             let third = (high - low) / 3.0;
             let [left, right] = [low + third, high - third];
-            let gaps = [across(left), across(right)];
+            let gaps = [gap_at(left), gap_at(right)];
             if gaps[0] <= 0.0 || gaps[1] <= 0.0 {
                 return true;
             }

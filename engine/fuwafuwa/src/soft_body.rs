@@ -115,8 +115,9 @@ impl<D: Dim> SoftBody<D> {
         let mesh = Mesh::grade(&grid, &connectivity, &hierarchy).expect(
             "a cell hierarchy matches the grid and the connectivity from which it was made",
         );
-        let mut blocks = ElementBatches::new(law, &elasticities(materials, 1.0), grid.voxel_size());
-        blocks.set_plasticities(&plasticities(materials));
+        let mut batches =
+            ElementBatches::new(law, &elasticities(materials, 1.0), grid.voxel_size());
+        batches.set_plasticities(&plasticities(materials));
         let mut body = Self {
             topology: Topology {
                 pieces: Pieces::new(&mesh),
@@ -127,7 +128,7 @@ impl<D: Dim> SoftBody<D> {
                 hierarchy,
                 mesh,
             },
-            state: State::new(blocks),
+            state: State::new(batches),
             cache: Cache::default(),
         };
         body.make_room();
@@ -137,7 +138,7 @@ impl<D: Dim> SoftBody<D> {
         }
         body.state.ahead.clone_from(&body.state.position);
         let elements: Vec<ElementId> = body.topology.mesh.elements().map(|(id, _)| id).collect();
-        body.state.blocks.update(
+        body.state.batches.update(
             &body.topology.mesh,
             &body.topology.grid,
             &[],
@@ -158,9 +159,9 @@ impl<D: Dim> SoftBody<D> {
             stiffness_scale,
             ..
         } = &self.topology;
-        self.cache.blend = BodyProperties::of(grid, materials);
+        self.cache.properties = BodyProperties::of(grid, materials);
         let elasticities = elasticities(materials, *stiffness_scale);
-        self.state.blocks.set_elasticities(&elasticities);
+        self.state.batches.set_elasticities(&elasticities);
         self.make_room();
         let voxels: Vec<Point> = self.topology.grid.voxels().collect();
         self.expose(&voxels);
@@ -224,7 +225,7 @@ impl<D: Dim> SoftBody<D> {
 
     /// Law of the elastic forces.
     pub fn law(&self) -> Law {
-        self.state.blocks.law()
+        self.state.batches.law()
     }
 
     /// Grading of the elements.
@@ -290,7 +291,7 @@ impl<D: Dim> SoftBody<D> {
     /// # Panics
     /// If the id was never used.
     pub fn force_on(&self, id: NodeId) -> D::Vector {
-        D::Vector::from_vec3(self.state.blocks.force_on(id).xyz())
+        D::Vector::from_vec3(self.state.batches.force_on(id).xyz())
     }
 
     /// Linear and angular momentum of the whole body about the origin [kg m/s, kg m²/s].
@@ -313,7 +314,7 @@ impl<D: Dim> SoftBody<D> {
     /// Number of awake elements with negative volume, that is, turned inside out, when forces were last
     /// computed. Always 0 under [`Law::Endo2004`], which does not check for inversion.
     pub fn inverted_count(&self) -> u32 {
-        self.state.blocks.inverted_count()
+        self.state.batches.inverted_count()
     }
 
     /// Mass of the whole body [kg].
@@ -332,30 +333,32 @@ impl<D: Dim> SoftBody<D> {
     /// stable if Ω²h (h + 2τ) < 4, that is, τ < (4/Ω² − h²) / 2h. The lead is at most [`LEAD_USED`] times
     /// this bound; the rate supplies the remaining damping of the slowest mode.
     pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
-        let ratio = self.cache.blend.damping;
-        let slow = self.cache.blend.slow * self.topology.stiffness_scale.sqrt();
-        let fast = self.cache.blend.fastest_swing * self.topology.stiffness_scale.sqrt();
+        let ratio = self.cache.properties.damping;
+        let slowest =
+            self.cache.properties.slowest_frequency * self.topology.stiffness_scale.sqrt();
+        let fastest =
+            self.cache.properties.fastest_frequency * self.topology.stiffness_scale.sqrt();
         let step = f64::from(duration);
-        let most = LEAD_USED * (4.0 / (fast * fast) - step * step) / (2.0 * step);
-        let lead = (2.0 * ratio / slow).min(most).max(0.0);
-        let rate = 2.0 * slow * (ratio - 0.5 * lead * slow).max(0.0);
+        let max_lead = LEAD_USED * (4.0 / (fastest * fastest) - step * step) / (2.0 * step);
+        let lead = (2.0 * ratio / slowest).min(max_lead).max(0.0);
+        let rate = 2.0 * slowest * (ratio - 0.5 * lead * slowest).max(0.0);
         (lead as f32, rate as f32)
     }
 
     /// Friction coefficient of the body: the mean over its voxels.
     pub(crate) fn friction(&self) -> f32 {
-        self.cache.blend.friction
+        self.cache.properties.friction
     }
 
     /// Returns whether any material in use has a finite strength; otherwise the body cannot tear.
     pub(crate) fn can_tear(&self) -> bool {
-        self.cache.blend.least_strength < f32::INFINITY
+        self.cache.properties.least_strength < f32::INFINITY
     }
 
     /// Longest stable substep [s]: 0.6 h / c, with the voxel size h [m] and the speed c [m/s] of the fastest
     /// pressure wave. The speed follows from the present stiffness: see [`SoftBody::stiffness_scale`].
     pub fn longest_substep(&self) -> f64 {
-        let fastest = self.cache.blend.fastest_wave * self.topology.stiffness_scale.sqrt();
+        let fastest = self.cache.properties.fastest_wave * self.topology.stiffness_scale.sqrt();
         COURANT * f64::from(self.topology.grid.voxel_size()) / fastest
     }
 
@@ -368,20 +371,20 @@ impl<D: Dim> SoftBody<D> {
     /// stable.
     pub(crate) fn scale_stiffness_for(&mut self, duration: f64) {
         let size = f64::from(self.topology.grid.voxel_size());
-        let ratio = COURANT * size / self.cache.blend.fastest_wave / duration;
+        let ratio = COURANT * size / self.cache.properties.fastest_wave / duration;
         let stiffness_scale = (ratio * ratio).min(1.0);
         if stiffness_scale == self.topology.stiffness_scale {
             return;
         }
         self.topology.stiffness_scale = stiffness_scale;
         let elasticities = elasticities(&self.topology.materials, stiffness_scale);
-        self.state.blocks.set_elasticities(&elasticities);
+        self.state.batches.set_elasticities(&elasticities);
     }
 
     /// Speed of the fastest pressure wave [m/s] at the full stiffness of the materials, that is, at a
     /// stiffness scale of 1.
     pub(crate) fn fastest_wave(&self) -> f64 {
-        self.cache.blend.fastest_wave
+        self.cache.properties.fastest_wave
     }
 
     pub(crate) fn states<'a>(

@@ -27,7 +27,7 @@ use crate::fracture::knife::{KnifeState, Knives};
 use crate::object_ref::ObjectRef;
 use crate::query::query_cache::QueryCache;
 use crate::rigid_body::RigidBodies;
-use crate::soft_body::damping::{PieceDamping, PieceMotion, motions, slow_down};
+use crate::soft_body::damping::{PieceDamping, PieceMotion, apply_damping, motions};
 use crate::soft_body::{SoftBodies, SoftBody};
 use crate::world::sleep::{fall_asleep, fall_asleep_rigid, wake};
 pub use body_handle::{BodyHandle, Removable};
@@ -152,9 +152,9 @@ impl<D: Dim> World<D> {
                 self.fracture(&mut report);
                 self.damp(duration);
             }
-            self.push(duration, hooks);
-            let hits = self.touch(duration);
-            self.drift(duration);
+            self.integrate_velocities(duration, hooks);
+            let hits = self.solve_constraints(duration);
+            self.integrate_positions(duration);
             self.wake(&hits.pieces);
             self.wake_rigids(&hits.rigids);
             if let Some(after) = &mut hooks.after_substep {
@@ -174,14 +174,16 @@ impl<D: Dim> World<D> {
     pub fn substeps(&self) -> u32 {
         let longest = self.bodies.iter().map(SoftBody::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
-        let asked = (f64::from(self.config.tick) / longest - 1e-6).ceil() as u32;
-        let most = self.config.most_in_tick();
+        let required = (f64::from(self.config.tick) / longest - 1e-6).ceil() as u32;
+        let max = self.config.max_in_tick();
         let usual = self.config.in_tick(60.0 * f64::from(DEFAULT_SUBSTEPS));
-        asked.clamp(usual.min(most), most)
+        required.clamp(usual.min(max), max)
     }
 
     fn start_tick(&mut self) {
-        self.bodies.iter_mut().for_each(SoftBody::note_before);
+        self.bodies
+            .iter_mut()
+            .for_each(SoftBody::store_start_positions);
         for rigid in self.rigids.iter_mut() {
             rigid.start_tick(self.config.tick);
         }
@@ -192,7 +194,7 @@ impl<D: Dim> World<D> {
         for rigid in self.rigids.iter_mut() {
             rigid.end_tick();
         }
-        self.note_touches();
+        self.report_contacts();
         self.ticks += 1;
     }
 
@@ -214,7 +216,8 @@ impl<D: Dim> World<D> {
             let changes = body.tear(&sides.collect::<Vec<_>>());
             report.nodes_split += failures.len() as u32;
             report.pieces_detached += changes.detached.len() as u32;
-            self.events.extend(Event::parted(id, &changes.detached));
+            self.events
+                .extend(Event::pieces_detached(id, &changes.detached));
             self.nearby.tear(id.slot(), body, &changes);
         }
     }
@@ -222,41 +225,41 @@ impl<D: Dim> World<D> {
     /// Damps the internal vibration of each piece, and applies drag.
     fn damp(&mut self, substep: f32) {
         let duration = self.config.round();
-        let touching = self.touching();
+        let touching = self.pieces_in_contact();
         for (slot, body) in self.bodies.by_slot_mut() {
             body.refresh_awake();
             let motions = motions(body);
             let (_, rate) = body.damping(substep);
-            let slowing: Vec<PieceDamping> = motions
+            let damping: Vec<PieceDamping> = motions
                 .iter()
                 .zip(&touching[slot])
                 .map(|(motion, &touches)| {
-                    slowing(motion, touches, rate, self.config.drag, D::CORNERS)
+                    damping_of(motion, touches, rate, self.config.drag, D::CORNERS)
                 })
-                .map(|slowing| slowing.over(duration))
+                .map(|damping| damping.over(duration))
                 .collect();
-            slow_down(body, &motions, &slowing);
+            apply_damping(body, &motions, &damping);
         }
     }
 
     /// Integrates velocities: elastic forces, gravity, external field and virtual coupling.
-    fn push(&mut self, duration: f32, hooks: &Hooks<'_, D>) {
+    fn integrate_velocities(&mut self, duration: f32, hooks: &Hooks<'_, D>) {
         let WorldConfig { gravity, drag, .. } = self.config;
         let gravity = gravity.to_vec3();
         for body in self.bodies.iter_mut() {
-            body.push(duration, gravity);
+            body.apply_forces(duration, gravity);
             if let Some(field) = hooks.field {
-                body.pull(duration, field);
+                body.apply_field(duration, field);
             }
         }
         for rigid in self.rigids.iter_mut() {
-            rigid.pull(duration);
+            rigid.start_substep(duration);
             if rigid.is_dynamic() && rigid.moves() {
                 let at = D::Vector::from_vec3(rigid.position());
                 let field = hooks.field.map(|field| field(at).to_vec3());
-                let field = field.filter(|pull| pull.is_finite());
-                let pull = field.map_or(gravity, |field| gravity + field);
-                rigid.fall::<D>(pull, drag, duration);
+                let field = field.filter(|acceleration| acceleration.is_finite());
+                let acceleration = field.map_or(gravity, |field| gravity + field);
+                rigid.integrate_forces::<D>(acceleration, drag, duration);
             }
         }
     }
@@ -264,37 +267,37 @@ impl<D: Dim> World<D> {
     /// Solves joints, knives and contacts, and applies their impulses to the velocities. Returns the sleeping
     /// pieces and rigid bodies that were hit. They act as immovable walls in this substep and wake at its
     /// end.
-    fn touch(&mut self, duration: f32) -> Hits {
+    fn solve_constraints(&mut self, duration: f32) -> Hits {
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
         nearby.follow(bodies, rigids, duration);
         let (broken, woken) = joint::solve(&mut self.joints, bodies, rigids, duration);
-        let held = self.hold_edges(duration);
+        let woken_by_knives = self.solve_knife_contacts(duration);
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
         let mut hits = self.contacts.find(bodies, rigids, nearby, duration);
         self.contacts.solve(bodies, rigids, nearby, duration);
         hits.add(woken.pieces, woken.rigids);
-        hits.add(held, Vec::new());
-        self.part_joints(broken);
+        hits.add(woken_by_knives, Vec::new());
+        self.remove_broken_joints(broken);
         hits
     }
 
     /// Integrates positions, then removes the part of the velocities that was added only to resolve overlaps.
-    fn drift(&mut self, duration: f32) {
+    fn integrate_positions(&mut self, duration: f32) {
         let mut furthest = 0.0f32;
         for body in self.bodies.iter_mut() {
             let (lead, _) = body.damping(duration);
-            furthest = furthest.max(body.drift(duration, lead));
+            furthest = furthest.max(body.move_nodes(duration, lead));
         }
         self.nearby.pass(duration, furthest);
         for rigid in self.rigids.iter_mut() {
-            rigid.drift(duration);
+            rigid.integrate_pose(duration);
         }
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let broken = joint::relax(&mut self.joints, bodies, rigids, duration);
         self.contacts.relax(bodies, rigids, duration);
-        self.part_joints(broken);
+        self.remove_broken_joints(broken);
     }
 
     /// Quarantines pieces that are non-finite or too fast: resets their nodes to the positions at the start
@@ -321,28 +324,28 @@ impl<D: Dim> World<D> {
             .collect();
         let pairs = self.nearby.nodes.list.iter();
         let is_pushed = |pair: &&NodePair| self.rigids.at(pair.rigid).pushes();
-        let handled = pairs
+        let kept_awake = pairs
             .filter(is_pushed)
-            .filter(|pair| pair.impulse.pressed > 0.0);
-        let handled = handled.filter_map(|pair| Some((pair.body, pair.piece(&self.bodies)?)));
-        let captives = self.nearby.captives.list.iter();
-        let captives = captives.map(|captive| &self.nearby.spheres.list[captive.sphere]);
-        let captives = captives.map(|sphere| (sphere.body, sphere.piece));
+            .filter(|pair| pair.impulse.normal_impulse > 0.0);
+        let kept_awake = kept_awake.filter_map(|pair| Some((pair.body, pair.piece(&self.bodies)?)));
+        let embedded = self.nearby.embedded.list.iter();
+        let embedded = embedded.map(|embedded| &self.nearby.spheres.list[embedded.sphere]);
+        let embedded = embedded.map(|sphere| (sphere.body, sphere.piece));
         let is_pushed = |knife: &&KnifeState| {
             let holder = self.rigids.get(knife.holder);
             holder.is_ok_and(|holder| holder.pushes())
         };
         let pushed = self.knives.iter().filter(is_pushed);
-        let cut = pushed.flat_map(|knife| knife.held(&self.bodies));
-        let handled: Vec<Hit> = handled.chain(captives).chain(cut).collect();
-        let fallen = fall_asleep(&mut self.bodies, &motions, &handled, self.config.tick);
+        let cut = pushed.flat_map(|knife| knife.pieces_inside(&self.bodies));
+        let kept_awake: Vec<Hit> = kept_awake.chain(embedded).chain(cut).collect();
+        let fallen = fall_asleep(&mut self.bodies, &motions, &kept_awake, self.config.tick);
         let events = fallen.iter().map(|&(body, piece)| Event::FellAsleep {
             body: self.bodies.id(body),
             piece,
         });
         self.events.extend(events);
-        let handled = self.contacts.handled(&self.rigids);
-        fall_asleep_rigid(&mut self.rigids, &handled, self.config.tick);
+        let kept_awake = self.contacts.pushed_bodies(&self.rigids);
+        fall_asleep_rigid(&mut self.rigids, &kept_awake, self.config.tick);
     }
 
     /// Wakes the dynamic rigid bodies in `hits`, and requests a new search for nodes near rigid bodies.
@@ -351,7 +354,7 @@ impl<D: Dim> World<D> {
             self.rigids.at_mut(slot).wake();
         }
         if !hits.is_empty() {
-            self.nearby.nodes.look_again();
+            self.nearby.nodes.request_full_search();
         }
     }
 
@@ -373,15 +376,16 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns a flag for each piece of each body: whether a contact presses on the piece.
-    fn touching(&self) -> IndexVec<BodySlot, IndexVec<PieceId, bool>> {
+    fn pieces_in_contact(&self) -> IndexVec<BodySlot, IndexVec<PieceId, bool>> {
         let none = |body: Option<&SoftBody<D>>| {
             let pieces = body.map_or(0, |body| body.pieces().list.len());
             vec![false; pieces].into()
         };
         let mut touching: IndexVec<_, IndexVec<_, bool>> = self.bodies.slots().map(none).collect();
-        for (body, piece) in self.nearby.pressed(&self.bodies) {
-            // `pressed` reads the contacts of the last substep. If a new body has since replaced the body in
-            // its arena slot, a contact may name a piece that the new body does not have; it is skipped.
+        for (body, piece) in self.nearby.pressed_pieces(&self.bodies) {
+            // `pressed_pieces` reads the contacts of the last substep. If a new body has since replaced the
+            // body in its arena slot, a contact may name a piece that the new body does not have; it is
+            // skipped.
             if let Some(touches) = touching[body].get_mut(piece.index()) {
                 *touches = true;
             }
@@ -398,7 +402,7 @@ fn is_due(substep: u32, substeps: u32, rounds: u32) -> bool {
 
 /// Returns the damping rates of a piece [1/s]. `rate` is the rate of its internal vibration, `drag` the air
 /// drag.
-fn slowing(
+fn damping_of(
     motion: &PieceMotion,
     touches: bool,
     rate: f32,
@@ -408,7 +412,7 @@ fn slowing(
     let is_crumb = motion.nodes as usize == corners;
     let settles = touches && motion.speed_squared < SETTLING_SPEED * SETTLING_SPEED;
     PieceDamping {
-        swing: rate,
+        vibration: rate,
         spin: if is_crumb && touches {
             CRUMB_SPIN_LOSS
         } else {

@@ -100,20 +100,20 @@ fn disc_is_fine_at_rim_and_coarse_inside() {
 #[test]
 fn laws_reproduce_youngs_modulus_on_cube() {
     fn check<D: Dim>() {
-        let stencil = ElementClass::<D>::new(D::ALL_CORNERS, cell_corners::<D>()).unwrap();
+        let element_class = ElementClass::<D>::new(D::ALL_CORNERS, cell_corners::<D>()).unwrap();
         let elasticity = Elasticity::new(2000.0, 0.0).unwrap();
         let (size, strain) = (0.5, 0.01);
-        let positions: Vec<_> = stencil
+        let positions: Vec<_> = element_class
             .offsets
             .iter()
             .map(|r| *r * 0.25 * DVec3::new(1.0 + strain, 1.0, 1.0))
             .collect();
         let ideal = 2000.0 * strain * (1..D::N).fold(1.0, |area, _| area * size);
         for law in [Law::Endo2004, Law::CorotationalVem] {
-            let all = forces(law, elasticity, &stencil, size, &positions);
+            let all = forces(law, elasticity, &element_class, size, &positions);
             let pull: f64 = all
                 .iter()
-                .zip(&stencil.offsets)
+                .zip(&element_class.offsets)
                 .filter(|(_, r)| r[0] > 0.0)
                 .map(|(force, _)| -force[0])
                 .sum();
@@ -131,12 +131,12 @@ fn laws_reproduce_youngs_modulus_on_cube() {
 /// element's rotation into account.
 #[test]
 fn paper_law_pulls_swapped_nodes_back() {
-    let stencil = ElementClass::<Dim2>::new(15, cell_corners::<Dim2>()).unwrap();
+    let element_class = ElementClass::<Dim2>::new(15, cell_corners::<Dim2>()).unwrap();
     let elasticity = Elasticity::new(1000.0, 0.0).unwrap();
-    let mut positions = stencil.offsets.clone();
+    let mut positions = element_class.offsets.clone();
     positions.swap(0, 1);
-    let all = forces(Law::Endo2004, elasticity, &stencil, 2.0, &positions);
-    let home = |k: usize| stencil.offsets[k][0] - positions[k][0];
+    let all = forces(Law::Endo2004, elasticity, &element_class, 2.0, &positions);
+    let home = |k: usize| element_class.offsets[k][0] - positions[k][0];
     assert!(
         all[0][0] * home(0) > 0.0 && all[1][0] * home(1) > 0.0,
         "{all:?}"

@@ -84,11 +84,11 @@ fn check_dent<D: Dim>() {
     assert!(width > 1.05, "clay: width {width} m");
     assert!((volume - 1.0).abs() < 0.05, "clay: volume {volume}");
     let body = &world[clay];
-    let dents = body
+    let plastic_strains = body
         .mesh()
         .elements()
         .filter_map(|(id, _)| body.plastic_strain(id));
-    assert!(dents.fold(0.0, f32::max) > 0.2);
+    assert!(plastic_strains.fold(0.0, f32::max) > 0.2);
     let ([height, width, volume], world, rubber) = pressed::<D>(rubber(), 0.65);
     assert!((height - 1.0).abs() < 0.01, "rubber: height {height} m");
     assert!((width - 1.0).abs() < 0.01 && (volume - 1.0).abs() < 0.01);
@@ -165,8 +165,8 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
     let mut body = SoftBody::new(grid, &[clay]).unwrap();
     let (id, element) = body.mesh().elements().next().unwrap();
     let element = element.clone();
-    let stencil = body.mesh().element_class(&element).clone();
-    let mut undone = DVec3::AXES;
+    let element_class = body.mesh().element_class(&element).clone();
+    let mut plastic_inverse = DVec3::AXES;
     let plasticity = Plasticity {
         yield_strain: f64::from(clay.yield_strain),
         limit: f64::from(clay.plastic_limit),
@@ -181,10 +181,16 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
         }
         let place = |&node: &_| body.node_state(node).0.to_vec3().as_dvec3();
         let positions: Vec<DVec3> = element.nodes.iter().map(place).collect();
-        let expected = forces_after(elasticity, &undone, &stencil, 1.0, &positions);
+        let expected = forces_after(
+            elasticity,
+            &plastic_inverse,
+            &element_class,
+            1.0,
+            &positions,
+        );
         let deformation = body.element_state(id).unwrap().deformation;
         let before = body.element_state(id).unwrap().energy;
-        undone = flow::<D>(plasticity, elasticity, &deformation, &undone);
+        plastic_inverse = flow::<D>(plasticity, elasticity, &deformation, &plastic_inverse);
         // A substep of zero length updates forces and plastic flow without moving nodes.
         body.advance(0.0, D::Vector::ZERO);
         let after = body.element_state(id).unwrap().energy;
@@ -200,13 +206,13 @@ fn check_reference<D: Dim>(seed: u32) -> f32 {
             }
         }
         let strain = body.plastic_strain(id).unwrap();
-        let other = fuwafuwa::inspect::plastic_stiffness_factor::<D>(&undone);
+        let other = fuwafuwa::inspect::plastic_stiffness_factor::<D>(&plastic_inverse);
         let expected = (1.0 / other).sqrt() - 1.0;
         assert!(
             (f64::from(strain) - expected).abs() < 2e-3,
             "{strain} for {expected}"
         );
-        let left = elastic_part(&deformation, &undone);
+        let left = elastic_part(&deformation, &plastic_inverse);
         assert!(left.iter().all(|row| row.is_finite()));
     }
     body.plastic_strain(id).unwrap()
@@ -265,11 +271,14 @@ fn check_kept<D: Dim>() {
         }
     }
     let body = &world[id];
-    let dents = body
+    let plastic_strains = body
         .mesh()
         .elements()
         .filter_map(|(id, _)| body.plastic_strain(id));
-    assert!(dents.fold(0.0, f32::max) > 0.05, "the material must flow");
+    assert!(
+        plastic_strains.fold(0.0, f32::max) > 0.05,
+        "the material must flow"
+    );
     assert!(
         before < 0.99 * first,
         "flow must dissipate energy: {first} to {before} J"
@@ -288,15 +297,15 @@ fn check_inherited<D: Blades>() {
     let (_, mut world, id) = pressed::<D>(Material::clay(), 0.6);
     let mean = |world: &World<D>| {
         let body = &world[id];
-        let dents = body.mesh().elements().map(|(own, element)| {
+        let plastic_strains = body.mesh().elements().map(|(own, element)| {
             let voxels = body.mesh().voxels(element).count() as f32;
             (voxels * body.plastic_strain(own).unwrap(), voxels)
         });
-        let (sum, voxels) = dents.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
+        let (sum, voxels) = plastic_strains.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
         sum / voxels
     };
-    let (dent, elements) = (mean(&world), world[id].mesh().element_count());
-    assert!(dent > 0.1);
+    let (plastic_strain, elements) = (mean(&world), world[id].mesh().element_count());
+    assert!(plastic_strain > 0.1);
     let centre = world[id].centre_of_mass();
     let corner = Vec3::new(centre[0] - 0.03, centre[1] - 2.0, -3.0);
     let blade = D::blade(corner, Vec3::new(0.05, 4.0, 0.0), Vec3::Z * 6.0);
@@ -304,8 +313,8 @@ fn check_inherited<D: Blades>() {
     let body = &world[id];
     assert!(body.pieces().count() == 2 && body.mesh().element_count() >= elements);
     assert!(
-        (mean(&world) - dent).abs() < 1e-4,
-        "{} for {dent}",
+        (mean(&world) - plastic_strain).abs() < 1e-4,
+        "{} for {plastic_strain}",
         mean(&world)
     );
     body.mesh()
@@ -324,7 +333,7 @@ fn check_inherited<D: Blades>() {
     }
     (0..60).for_each(|_| _ = world.step());
     assert!(
-        (mean(&world) - dent).abs() < 0.05,
+        (mean(&world) - plastic_strain).abs() < 0.05,
         "the deformation must be permanent"
     );
 }
@@ -379,8 +388,11 @@ fn check_abuse<D: Dim>(seed: u32) {
     }
     let body = &world[id];
     for (own, _) in body.mesh().elements() {
-        let dent = f64::from(body.plastic_strain(own).unwrap());
-        assert!(dent < limit * 1.05 + 0.05, "{dent} of {limit}");
+        let plastic_strain = f64::from(body.plastic_strain(own).unwrap());
+        assert!(
+            plastic_strain < limit * 1.05 + 0.05,
+            "{plastic_strain} of {limit}"
+        );
     }
     let energy = body.kinetic_energy();
     assert!(

@@ -46,12 +46,42 @@ fn check_whole<D: Dim>(world: &World<D>, what: &str) {
             { body.mesh().elements() }
                 .map(|(_, element)| body.mesh().voxels(element).count())
                 .sum::<usize>(),
-            grid.left_count(),
+            grid.remaining_count(),
             "{what}"
         );
     }
     let loaded = load::<D>(&save(world)).unwrap_or_else(|bad| panic!("{what}: {bad}"));
     assert_eq!(loaded.hash(), world.hash(), "{what}");
+}
+
+#[test]
+fn scaled_grid_keeps_voxels_removed() {
+    let grid = VoxelGrid::<Dim2>::from_fn([4, 2, 1], 0.5, |_| 1).unwrap();
+    let mut world = World::<Dim2>::new(weightless()).unwrap();
+    let id = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+    let middle = Blade::segment(Vec2::new(1.0, -1.0), Vec2::new(1.0, 2.0));
+    world.cut(id, &middle).unwrap();
+    let right = { world[id].piece_views().into_iter() }.find(|piece| piece.centre.x > 1.0);
+    world.remove_piece(id, right.unwrap().number).unwrap();
+    let scaled = world[id].grid().clone().scaled(2.0).unwrap();
+    assert_eq!((scaled.solid_count(), scaled.remaining_count()), (8, 4));
+    for voxel in scaled.voxels() {
+        assert_eq!(scaled.is_present(voxel), voxel[0] < 2, "{voxel:?}");
+    }
+    // Four voxels of 1 m × 1 m × 1 m remain, of density 100 kg/m³.
+    let half = SoftBody::new(
+        scaled,
+        &[Material {
+            density: 100.0,
+            ..Material::default()
+        }],
+    )
+    .unwrap();
+    assert!(
+        (half.total_mass() - 400.0).abs() < 1e-3,
+        "{}",
+        half.total_mass()
+    );
 }
 
 fn random_blade<D: Blades>(seed: &mut u32) -> Blade<D> {
@@ -240,7 +270,7 @@ fn remove_piece_has_no_effect_on_vibration_of_rest() {
     assert_eq!(alone, beside);
 }
 
-fn check_leaning<D: Blades>() {
+fn check_supported<D: Blades>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world
@@ -312,8 +342,8 @@ fn check_leaning<D: Blades>() {
 
 #[test]
 fn remove_piece_wakes_only_bodies_in_contact() {
-    check_leaning::<Dim2>();
-    check_leaning::<Dim3>();
+    check_supported::<Dim2>();
+    check_supported::<Dim3>();
 }
 
 fn check_ties<D: Blades>() {

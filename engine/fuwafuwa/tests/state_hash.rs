@@ -27,11 +27,11 @@ fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
 /// Stored values that do not change the hash. Each entry is the end of the value's path, and the reason.
 const WITHOUT_EFFECT: [(&str, &str); 2] = [
     (
-        "impulse.dragged.3",
+        "impulse.friction_impulse.3",
         "the fourth component is padding and cleared on loading",
     ),
     (
-        "impulse.dragged.2",
+        "impulse.friction_impulse.2",
         "in 2D the third component is cleared on loading",
     ),
 ];
@@ -525,13 +525,13 @@ const COVERED: [&str; 14] = [
     "joints.slots.item.attached.1.Position",
     "joints.slots.item.kind.stiffness",
     "knives.slots.item.samples.passed",
-    "nearby.rigids.list.impulse.pressed",
-    "nearby.nodes.list.impulse.dragged",
+    "nearby.rigids.list.impulse.normal_impulse",
+    "nearby.nodes.list.impulse.friction_impulse",
     "nearby.pairs.list.met_in_front",
     "rigids.slots.item.reactions.contact",
     "bodies.slots.item.state.damage",
     "bodies.slots.item.state.cooldowns.points",
-    "bodies.slots.item.state.blocks.undone",
+    "bodies.slots.item.state.batches.plastic_inverses",
     "bodies.slots.item.topology.mesh.free_nodes",
     "events.ContactForce.point",
     "touching",

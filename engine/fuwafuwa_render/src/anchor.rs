@@ -44,7 +44,7 @@ pub fn anchor<D: Dim>(body: &SoftBody<D>) -> Anchor {
     };
     let (position, _, turn) = frame::<D, _>(states);
     let whole: f32 = masses.iter().sum();
-    let voxels = body.grid().left_count() as f32 * masses[largest] / whole;
+    let voxels = body.grid().remaining_count() as f32 * masses[largest] / whole;
     Anchor {
         position,
         axes: columns(turn.unwrap_or_default()),

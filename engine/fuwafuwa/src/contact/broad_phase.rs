@@ -29,15 +29,15 @@ use crate::soft_body::{SoftBodies, SoftBody};
 use crate::topology::changes::Changes;
 pub use contact_sphere::{ContactSphere, SphereId, mean};
 pub use contact_spheres::Spheres;
-pub use embedded_spheres::{Captives, EmbeddedSphere};
+pub use embedded_spheres::{EmbeddedSphere, EmbeddedSpheres};
 pub use known_impulse::Impulse;
 pub use node_pairs::{NodePair, NodePairs};
-pub use rigid_contacts::{Passed, RigidTouch, RigidTouches};
+pub use rigid_contacts::{PressedContact, RigidContactPoint, RigidContactPoints};
 pub use sphere_pair::MARGIN;
 use sphere_pair::renumber;
 pub use sphere_pairs::SpherePairs;
 pub use supported_bodies::{
-    bounds_of, leaning_on_body, leaning_on_pieces, leaning_on_rigid, sleeping_in,
+    bounds_of, sleeping_in, supported_by_body, supported_by_pieces, supported_by_rigid,
 };
 
 /// Speed above which a moving object wakes a sleeper that it touches [m/s]: five times the sleep speed
@@ -58,20 +58,20 @@ pub struct Nearby {
     /// Pairs of contact spheres.
     pub pairs: SpherePairs,
     /// Contact points between rigid bodies.
-    pub rigids: RigidTouches,
+    pub rigids: RigidContactPoints,
     /// Spheres embedded in another piece.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub captives: Captives,
+    pub embedded: EmbeddedSpheres,
     /// Remaining time of the tick [s].
     #[cfg_attr(feature = "serde", serde(skip))]
-    left: f32,
-    /// Whether `captives` is up to date: embedded spheres are searched once per tick.
+    remaining_time: f32,
+    /// Whether `embedded` is up to date: embedded spheres are searched once per tick.
     #[cfg_attr(feature = "serde", serde(skip))]
-    knows_captives: bool,
+    knows_embedded: bool,
 }
 
 hash_state! {
-    struct Nearby { nodes, spheres, pairs, rigids } skip { captives, left, knows_captives }
+    struct Nearby { nodes, spheres, pairs, rigids } skip { embedded, remaining_time, knows_embedded }
 }
 
 impl Nearby {
@@ -85,8 +85,8 @@ impl Nearby {
         if let Some(numbers) = numbers {
             renumber(&mut self.pairs.list, &numbers);
         }
-        self.captives = Captives::default();
-        (self.left, self.knows_captives) = (duration, false);
+        self.embedded = EmbeddedSpheres::default();
+        (self.remaining_time, self.knows_embedded) = (duration, false);
     }
 
     /// Updates the lists after a tear of a body. `changes` holds the nodes and elements that the tear added,
@@ -95,7 +95,7 @@ impl Nearby {
         self.nodes.tear(slot, &changes.nodes);
         let changed = &mut self.pairs.changed;
         self.spheres.tear(slot, body, changes, changed);
-        self.captives.tear(&self.spheres);
+        self.embedded.tear(&self.spheres);
     }
 
     /// Removes a soft body from all lists, so that another body may take its slot.
@@ -160,37 +160,38 @@ impl Nearby {
     /// Subtracts a substep of `duration` [s] from the remaining time of the tick, and the motion in that
     /// substep from the search margins. No node moved farther than `distance` [m] in the substep.
     pub fn pass(&mut self, duration: f32, distance: f32) {
-        self.left -= duration;
+        self.remaining_time -= duration;
         self.nodes.pass(distance);
         self.pairs.pass(duration, distance);
     }
 
     /// Updates all lists to the present positions, for a substep of `duration` [s].
     pub fn follow<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies, duration: f32) {
-        self.nodes.follow(bodies, rigids, duration, self.left);
+        self.nodes
+            .follow(bodies, rigids, duration, self.remaining_time);
         let changed = self.pairs.follow(&mut self.spheres, bodies);
-        if !self.knows_captives {
-            self.captives.find(&self.spheres, &self.pairs.list, bodies);
-            self.knows_captives = true;
+        if !self.knows_embedded {
+            self.embedded.find(&self.spheres, &self.pairs.list, bodies);
+            self.knows_embedded = true;
         }
         if changed {
             let paired = self.pairs.list.iter().flat_map(|pair| pair.spheres);
-            let captives = self.captives.list.iter();
-            let captives = captives.flat_map(|captive| [captive.sphere, captive.exit]);
-            self.spheres.note_close(paired.chain(captives));
+            let embedded = self.embedded.list.iter();
+            let embedded = embedded.flat_map(|embedded| [embedded.sphere, embedded.exit]);
+            self.spheres.set_close(paired.chain(embedded));
         }
         self.spheres.take_velocities(bodies);
     }
 
     /// Iterates over the pieces on which a contact presses, that is, with a normal impulse above 0. Each item
     /// is a body slot and a piece number. A piece may occur several times.
-    pub fn pressed<D: Dim>(
+    pub fn pressed_pieces<D: Dim>(
         &self,
         bodies: &SoftBodies<D>,
     ) -> impl Iterator<Item = (BodySlot, PieceId)> {
-        let nodes = { self.nodes.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);
+        let nodes = { self.nodes.list.iter() }.filter(|pair| pair.impulse.normal_impulse > 0.0);
         let nodes = nodes.filter_map(|pair| Some((pair.body, pair.piece(bodies)?)));
-        let pairs = { self.pairs.list.iter() }.filter(|pair| pair.impulse.pressed > 0.0);
+        let pairs = { self.pairs.list.iter() }.filter(|pair| pair.impulse.normal_impulse > 0.0);
         let pairs = pairs.flat_map(|pair| pair.both(&self.spheres.list));
         nodes.chain(pairs.map(|sphere| (sphere.body, sphere.piece)))
     }

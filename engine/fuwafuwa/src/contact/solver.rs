@@ -22,22 +22,22 @@ use crate::rigid_body::layers::Layers;
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 use contact_row::{AHEAD, CLOSE, Contact, is_close};
-use contact_sides::{FreeContact, HandContact, NodeContact, SphereContact};
+use contact_sides::{DynamicContact, KinematicContact, NodeContact, SphereContact};
 use escape_contact::EscapeContact;
-use rigid_contact_rows::{find_free, find_hands};
-use solver_velocities::Motion;
+use rigid_contact_rows::{find_dynamic, find_kinematic};
+use solver_velocities::SolverVelocities;
 use std::collections::BTreeSet;
 
 /// Cosine above which a crumb counts as behind a contact sphere of a surface. It is the cosine of the angle
 /// between the inward normal and the direction from the contact sphere to the crumb. A smaller limit would
 /// include crumbs that lie on the surface: a crumb in the hollow between four spheres, beside a corner of a
 /// 3D body, has a cosine of 0.17. If it is pressed in by a sixth of a voxel, its cosine is 0.3.
-const BEHIND: f32 = 0.3;
+const MIN_BEHIND_COSINE: f32 = 0.3;
 /// Minimum length of a contact sphere's outward vector, as a share of the sphere's radius. If the vector is
 /// shorter, no crumb counts as behind the sphere, because the direction is unreliable. At an undeformed flat
 /// face the vector is as long as the radius, so the limit excludes elements pressed to a fifth of their
 /// height.
-const SHORTEST_WAY_OUT: f32 = 0.2;
+const MIN_OUTWARD_LENGTH: f32 = 0.2;
 /// Gap between a node and a rigid body below which one can wake the other [voxels].
 const WAKING_NODE: f32 = 2.0 * CLOSE;
 /// Gap between two contact spheres below which one can wake the other, as a share of the sum of their radii.
@@ -49,9 +49,9 @@ pub struct Contacts {
     nodes: Vec<NodeContact>,
     spheres: Vec<SphereContact>,
     exits: Vec<EscapeContact>,
-    hands: Vec<HandContact>,
-    free: Vec<FreeContact>,
-    motion: Motion,
+    kinematic: Vec<KinematicContact>,
+    dynamic: Vec<DynamicContact>,
+    velocities: SolverVelocities,
 }
 
 /// Sleeping piece that was hit: body slot and piece number.
@@ -75,19 +75,20 @@ impl Contacts {
         duration: f32,
     ) -> Hits {
         let mut hits = Hits::default();
-        self.motion.clear(bodies);
+        self.velocities.clear(bodies);
         self.find_nodes(bodies, rigids, &mut nearby.nodes, duration, &mut hits);
         self.find_spheres(bodies, nearby, duration, &mut hits.pieces);
         self.exits.clear();
-        let (spheres, motion) = (&nearby.spheres, &mut self.motion);
-        let exits = nearby.captives.list.iter();
-        let exits = exits
-            .filter_map(|captive| EscapeContact::new(captive, bodies, spheres, motion, duration));
+        let (spheres, velocities) = (&nearby.spheres, &mut self.velocities);
+        let exits = nearby.embedded.list.iter();
+        let exits = exits.filter_map(|embedded| {
+            EscapeContact::new(embedded, bodies, spheres, velocities, duration)
+        });
         self.exits.extend(exits);
-        find_hands(rigids, duration, &mut self.hands);
-        let woken = find_free::<D>(rigids, &nearby.rigids, duration, &mut self.free);
+        find_kinematic(rigids, duration, &mut self.kinematic);
+        let woken = find_dynamic::<D>(rigids, &nearby.rigids, duration, &mut self.dynamic);
         hits.rigids.extend(woken);
-        hits.settle();
+        hits.sort();
         hits
     }
 
@@ -110,7 +111,7 @@ impl Contacts {
                 let (node, moves) = (pair.node, rigid.moves());
                 // Sleeping nodes have contacts with moving rigid bodies only.
                 if body.inverse_masses()[node] == 0.0 && !moves {
-                    pair.impulse.release();
+                    pair.impulse.clear();
                     continue;
                 }
                 let (at, velocity) = (body.positions()[node], body.velocities()[node]);
@@ -130,7 +131,7 @@ impl Contacts {
                 let size = body.grid().voxel_size();
                 let approach = inner::<D>(relative, normal);
                 if !is_close(gap, approach, size, duration) {
-                    pair.impulse.release();
+                    pair.impulse.clear();
                     // A contact becomes active below a gap of `CLOSE` voxels. The factor 1.1 allows for
                     // rounding.
                     pair.clear = travel + gap - 1.1 * CLOSE * size;
@@ -150,7 +151,8 @@ impl Contacts {
                         hits.rigids.push(pair.rigid);
                     }
                 }
-                let inverse_mass = body.inverse_masses()[node] + rigid.yields_near(at.xyz());
+                let inverse_mass =
+                    body.inverse_masses()[node] + rigid.max_inverse_effective_mass(at.xyz());
                 // A sleeping node acts as a fixed obstacle for a dynamic rigid body. Skips the node's contacts
                 // with all other rigid bodies.
                 if body.inverse_masses()[node] == 0.0 && !rigid.is_dynamic() {
@@ -158,7 +160,7 @@ impl Contacts {
                 }
                 let friction = rigid.friction;
                 let contact = Contact::new(normal, gap, duration, 1.0 / inverse_mass, friction);
-                contacts.push((contact.known_as::<D>(index, &pair.impulse), &*pair));
+                contacts.push((contact.with_warm_start::<D>(index, &pair.impulse), &*pair));
             }
             (contacts, hits)
         });
@@ -168,7 +170,7 @@ impl Contacts {
             self.nodes
                 .extend(contacts.into_iter().map(|(contact, pair)| NodeContact {
                     contact,
-                    node: self.motion.row(pair.body, pair.node),
+                    node: self.velocities.row(pair.body, pair.node),
                     mover: rigids.at(pair.rigid).moves().then(|| {
                         let at = bodies.at(pair.body).positions()[pair.node];
                         let lever = at.xyz() - rigids.at(pair.rigid).position();
@@ -192,7 +194,7 @@ impl Contacts {
         let has_layers = bodies.iter().any(|body| body.layers() != Layers::default());
         let layers = |sphere: &ContactSphere| bodies.at(sphere.body).layers();
         let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
-        let (all, captives) = (&nearby.spheres, &nearby.captives);
+        let (all, embedded) = (&nearby.spheres, &nearby.embedded);
         // Borrows the centres as a slice: indexing the `IndexVec` would load its pointer again for each pair.
         let centres = all.centres.as_slice();
         let widths = bodies.iter().map(|body| body.grid().voxel_size());
@@ -213,20 +215,20 @@ impl Contacts {
                 // read.
                 if is_beyond(widest) || is_beyond(both[0].radius + both[1].radius) {
                     pair.met_in_front = false;
-                    pair.impulse.release();
+                    pair.impulse.clear();
                     continue;
                 }
                 if has_layers && !meet(both) {
                     pair.met_in_front = false;
-                    pair.impulse.release();
+                    pair.impulse.clear();
                     continue;
                 }
                 let touching = both[0].radius + both[1].radius;
-                if captives.is_inside(pair.spheres, both) {
+                if embedded.is_inside(pair.spheres, both) {
                     // Treats an embedded sphere as having met the surface from outside. So once the sphere
                     // has escaped, contacts push it away and do not pull it in again.
                     pair.met_in_front = true;
-                    pair.impulse.release();
+                    pair.impulse.clear();
                     continue;
                 }
                 let distance = squared.sqrt().max(1e-9);
@@ -241,7 +243,7 @@ impl Contacts {
                 let relative = all.velocities[a] - all.velocities[b];
                 let approach = inner::<D>(relative, normal);
                 if !is_close(gap, approach, touching, duration) {
-                    pair.impulse.release();
+                    pair.impulse.clear();
                     continue;
                 }
                 pair.impulse.speed = pair.impulse.speed.max(-approach);
@@ -254,11 +256,11 @@ impl Contacts {
                 if first + second == 0.0 {
                     continue;
                 }
-                let inertia = 1.0 / (first + second);
+                let effective_mass = 1.0 / (first + second);
                 let [first, second] = both.map(|sphere| frictions[sphere.body]);
                 let friction = 0.5 * (first + second);
-                let contact = Contact::new(normal, gap, duration, inertia, friction);
-                contacts.push((contact.known_as::<D>(index, &pair.impulse), both));
+                let contact = Contact::new(normal, gap, duration, effective_mass, friction);
+                contacts.push((contact.with_warm_start::<D>(index, &pair.impulse), both));
             }
             (contacts, hits)
         });
@@ -267,19 +269,19 @@ impl Contacts {
             self.spheres
                 .extend(contacts.into_iter().map(|(contact, both)| SphereContact {
                     contact,
-                    grips: both.map(|sphere| self.motion.grip::<D>(sphere)),
+                    node_rows: both.map(|sphere| self.velocities.sphere_rows::<D>(sphere)),
                 }));
         }
     }
 
     /// Returns the dynamic rigid bodies that a moving kinematic or coupled body presses on.
-    pub fn handled(&self, rigids: &RigidBodies) -> BTreeSet<RigidSlot> {
+    pub fn pushed_bodies(&self, rigids: &RigidBodies) -> BTreeSet<RigidSlot> {
         let pressed = self
-            .free
+            .dynamic
             .iter()
             .filter(|row| row.contact.normal_impulse > 0.0);
-        let handled = pressed.filter(|row| rigids.at(row.both[1]).pushes());
-        handled.map(|row| row.both[0]).collect()
+        let pushed = pressed.filter(|row| rigids.at(row.both[1]).pushes());
+        pushed.map(|row| row.both[0]).collect()
     }
 
     /// Solves the contacts: applies their impulses to the velocities of nodes and rigid bodies.
@@ -290,65 +292,69 @@ impl Contacts {
         nearby: &mut Nearby,
         duration: f32,
     ) {
-        let motion = &mut self.motion;
-        motion.load(bodies);
+        let velocities = &mut self.velocities;
+        velocities.load(bodies);
         for row in &self.nodes {
-            motion.push_node(row, rigids, row.contact.start(), duration);
+            velocities.apply_to_node(row, rigids, row.contact.start(), duration);
         }
         for row in self
             .spheres
             .iter()
             .filter(|row| row.contact.normal_impulse > 0.0)
         {
-            motion.push_spheres::<D>(&row.grips, row.contact.start());
+            velocities.apply_to_spheres::<D>(&row.node_rows, row.contact.start());
         }
-        for row in &self.free {
+        for row in &self.dynamic {
             row.start(rigids, duration);
         }
         // Escape contacts are solved only once, and before all other contacts. So a sphere that is stuck
         // inside a piece does not force its way out.
         for exit in &self.exits {
-            exit.solve::<D>(motion);
+            exit.solve::<D>(velocities);
         }
         for backwards in [false, true] {
             for_each(&mut self.spheres, backwards, |row| {
-                let relative = motion.between::<D>(&row.grips);
+                let relative = velocities.relative_of_spheres::<D>(&row.node_rows);
                 if !row.contact.is_idle::<D>(relative) {
                     let change = row.contact.solve::<D>(relative);
-                    motion.push_spheres::<D>(&row.grips, change);
+                    velocities.apply_to_spheres::<D>(&row.node_rows, change);
                 }
             });
             for_each(&mut self.nodes, backwards, |row| {
-                let change = row.contact.solve::<D>(motion.of_node(row, rigids));
-                motion.push_node(row, rigids, change, duration);
+                let change = row
+                    .contact
+                    .solve::<D>(velocities.relative_of_node(row, rigids));
+                velocities.apply_to_node(row, rigids, change, duration);
             });
-            for_each(&mut self.hands, backwards, |row| {
+            for_each(&mut self.kinematic, backwards, |row| {
                 let [own, other] = row.both.map(|slot| Row::from(rigids.at(slot).velocity()));
                 let change = row.contact.solve::<D>(own - other);
-                rigids.at_mut(row.both[0]).push(change.xyz(), duration);
+                rigids
+                    .at_mut(row.both[0])
+                    .apply_contact_impulse(change.xyz(), duration);
                 let other = rigids.at_mut(row.both[1]);
-                other.push((-change).xyz(), duration);
+                other.apply_contact_impulse((-change).xyz(), duration);
             });
-            for_each(&mut self.free, backwards, |row| {
+            for_each(&mut self.dynamic, backwards, |row| {
                 row.solve::<D>(rigids, duration)
             });
         }
-        motion.store(bodies);
+        velocities.store(bodies);
         for NodeContact { contact, .. } in &self.nodes {
             nearby.nodes.list[contact.pair as usize]
                 .impulse
-                .note(contact);
+                .store(contact);
         }
         for SphereContact { contact, .. } in &self.spheres {
             nearby.pairs.list[contact.pair as usize]
                 .impulse
-                .note(contact);
+                .store(contact);
         }
-        let passed = self.free.iter().filter_map(FreeContact::passed);
-        nearby.rigids.passed.extend(passed);
+        let pressed = self.dynamic.iter().filter_map(DynamicContact::pressed);
+        nearby.rigids.pressed.extend(pressed);
         nearby
             .rigids
-            .renew(self.free.iter().map(FreeContact::touch));
+            .renew(self.dynamic.iter().map(DynamicContact::touch));
     }
 
     /// Removes the velocity by which overlaps were resolved. Follows the position update.
@@ -358,27 +364,31 @@ impl Contacts {
         rigids: &mut RigidBodies,
         duration: f32,
     ) {
-        let motion = &mut self.motion;
-        motion.load(bodies);
+        let velocities = &mut self.velocities;
+        velocities.load(bodies);
         for exit in &self.exits {
-            exit.relax::<D>(motion);
+            exit.relax::<D>(velocities);
         }
         for row in &mut self.spheres {
             if row.contact.was_pushed_out() {
-                let change = row.contact.relax::<D>(motion.between::<D>(&row.grips));
-                motion.push_spheres::<D>(&row.grips, change);
+                let change = row
+                    .contact
+                    .relax::<D>(velocities.relative_of_spheres::<D>(&row.node_rows));
+                velocities.apply_to_spheres::<D>(&row.node_rows, change);
             }
         }
         for row in &mut self.nodes {
             if row.contact.was_pushed_out() {
-                let change = row.contact.relax::<D>(motion.of_node(row, rigids));
-                motion.push_node(row, rigids, change, duration);
+                let change = row
+                    .contact
+                    .relax::<D>(velocities.relative_of_node(row, rigids));
+                velocities.apply_to_node(row, rigids, change, duration);
             }
         }
-        for row in &mut self.free {
+        for row in &mut self.dynamic {
             row.relax::<D>(rigids, duration);
         }
-        motion.store(bodies);
+        velocities.store(bodies);
         for row in &self.nodes {
             if let Some((mover, lever)) = row.mover {
                 let impulse = row.contact.start().xyz() * (-1.0 / duration);
@@ -394,11 +404,11 @@ impl Hits {
         if !pieces.is_empty() || !rigids.is_empty() {
             self.pieces.extend(pieces);
             self.rigids.extend(rigids);
-            self.settle();
+            self.sort();
         }
     }
 
-    fn settle(&mut self) {
+    fn sort(&mut self) {
         self.pieces.sort_unstable();
         self.pieces.dedup();
         self.rigids.sort_unstable();
@@ -424,8 +434,8 @@ fn behind_surface<D: Dim>(
     let length = inner::<D>(out, out).sqrt();
     let normal = out * (sign / length.max(1e-9));
     let ahead = inner::<D>(apart, normal);
-    let is_behind = ahead < -BEHIND * inner::<D>(apart, apart).sqrt();
-    (is_behind && length > SHORTEST_WAY_OUT * wall.radius).then_some((normal, ahead))
+    let is_behind = ahead < -MIN_BEHIND_COSINE * inner::<D>(apart, apart).sqrt();
+    (is_behind && length > MIN_OUTWARD_LENGTH * wall.radius).then_some((normal, ahead))
 }
 
 fn for_each<T>(rows: &mut [T], backwards: bool, mut solve: impl FnMut(&mut T)) {

@@ -51,7 +51,7 @@ impl Blade<Dim3> {
 
 impl<D: Dim> Blade<D> {
     /// Returns whether the line segment between two points [m] crosses the blade.
-    fn parts(&self, a: Vec3, b: Vec3) -> bool {
+    fn crosses(&self, a: Vec3, b: Vec3) -> bool {
         let normal = self.across.cross(self.along);
         let (over, under) = (normal.dot(a - self.corner), normal.dot(b - self.corner));
         if (over > 0.0) == (under > 0.0) {
@@ -139,7 +139,7 @@ impl<D: Dim> SoftBody<D> {
                 }
                 let there =
                     middles[self.grid().index(next)].expect("every remaining voxel has an owner");
-                if blade.parts(here, there) {
+                if blade.crosses(here, there) {
                     crossed.insert((voxel, axis));
                 }
             }

@@ -9,14 +9,14 @@ const LEAF: usize = 4;
 
 /// Margin of a box around its content, as a share of its widest side: ten times the tolerance 10⁻⁴ of the
 /// intersection tests.
-const LITTLE: f32 = 1e-3;
+const MARGIN: f32 = 1e-3;
 /// Additional margin of a box, as a share of its largest absolute coordinate: about eight rounding errors of
 /// single precision.
 const ROUNDING: f32 = 1e-6;
 
 /// Limit for refitting. If the summed widths of all nodes exceed this multiple of their sum at construction,
 /// the tree should be rebuilt. Rotation alone increases the widths of a box by up to √3.
-const WORN: f32 = 2.0;
+const MAX_GROWTH: f32 = 2.0;
 
 /// Empty box: its lower corner is above its upper corner.
 const EMPTY: Bounds = [Vec3::INFINITY, Vec3::NEG_INFINITY];
@@ -123,7 +123,7 @@ impl Tree {
             self.nodes[node].bounds = bounds;
         }
         let width = self.width();
-        width <= WORN * self.built_width
+        width <= MAX_GROWTH * self.built_width
     }
 
     /// Returns the sum of the widths of all nodes along all axes [m].
@@ -198,8 +198,8 @@ pub fn with_margin([low, high]: Bounds) -> Bounds {
     }
     let widths = high - low;
     let largest = low.abs().max(high.abs()).max_element();
-    let little = LITTLE * widths.max_element().max(0.0) + ROUNDING * largest;
-    [low - Vec3::splat(little), high + Vec3::splat(little)]
+    let margin = MARGIN * widths.max_element().max(0.0) + ROUNDING * largest;
+    [low - Vec3::splat(margin), high + Vec3::splat(margin)]
 }
 
 /// Returns whether two boxes overlap.

@@ -7,10 +7,10 @@ use glam::Vec3;
 
 /// Number of Newton iterations that find the local coordinates of a point in a deformed cell. 6 iterations
 /// suffice if corners are displaced at random by up to 0.6 of the cell's width; 12 are a safety factor of 2.
-const ROUNDS: usize = 12;
+const NEWTON_STEPS: usize = 12;
 /// Relative tolerance at the borders of segments, triangles and cells, so that rounding leaves no gap between
 /// neighbours. At 16 m from the origin, it equals the rounding error of single precision for a voxel of 1 cm.
-const LITTLE: f32 = 1e-4;
+const TOLERANCE: f32 = 1e-4;
 
 /// Returns the distance along a ray to a segment in 2D, as a multiple of the length of `direction`. Returns
 /// `None` if the ray misses the segment.
@@ -20,7 +20,7 @@ pub fn ray_meets_segment(from: Vec3, direction: Vec3, [a, b]: [Vec3; 2]) -> Opti
     let across = flat(direction, along);
     let (far, share) = (flat(reach, along) / across, flat(reach, direction) / across);
     // For parallel lines, `far` and `share` are infinite or NaN, so the result is `None`.
-    let is_in = (-LITTLE..=1.0 + LITTLE).contains(&share);
+    let is_in = (-TOLERANCE..=1.0 + TOLERANCE).contains(&share);
     (is_in && far >= 0.0 && far.is_finite()).then_some(far)
 }
 
@@ -34,7 +34,7 @@ pub fn ray_meets_triangle(from: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> 
     let beside = reach.cross(one);
     let v = direction.dot(beside) / determinant;
     let far = two.dot(beside) / determinant;
-    let is_in = u >= -LITTLE && v >= -LITTLE && u + v <= 1.0 + LITTLE;
+    let is_in = u >= -TOLERANCE && v >= -TOLERANCE && u + v <= 1.0 + TOLERANCE;
     (is_in && far >= 0.0 && far.is_finite()).then_some(far)
 }
 
@@ -70,12 +70,12 @@ pub fn nearest_on_triangle(at: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
 
 /// Returns whether a point is in a deformed cell with corners in the order of [`corner`]. It is inside if
 /// multilinear interpolation of the corners yields the point at local coordinates from 0 to 1.
-pub fn is_in_block<D: Dim>(at: Vec3, corners: &[Vec3]) -> bool {
+pub fn is_in_cell<D: Dim>(at: Vec3, corners: &[Vec3]) -> bool {
     // Moves the origin to the point, because absolute coordinates lose precision far from the world's origin.
     let corners: Vec<Vec3> = corners.iter().map(|&corner| corner - at).collect();
     let mut shares = flat::<D>(Vec3::splat(0.5));
-    for _ in 0..ROUNDS {
-        let (place, slopes) = in_block::<D>(shares, &corners);
+    for _ in 0..NEWTON_STEPS {
+        let (place, slopes) = interpolate::<D>(shares, &corners);
         let Some(step) = solved(slopes, -place) else {
             return false;
         };
@@ -84,18 +84,18 @@ pub fn is_in_block<D: Dim>(at: Vec3, corners: &[Vec3]) -> bool {
             return false;
         }
     }
-    let (miss, _) = in_block::<D>(shares, &corners);
+    let (miss, _) = interpolate::<D>(shares, &corners);
     let width = corners[D::CORNERS - 1] - corners[0];
-    let is_there = miss.dot(miss) <= LITTLE * LITTLE * width.dot(width);
+    let is_there = miss.dot(miss) <= TOLERANCE * TOLERANCE * width.dot(width);
     is_there
         && shares.to_array()[..D::N]
             .iter()
-            .all(|share| (-LITTLE..=1.0 + LITTLE).contains(share))
+            .all(|share| (-TOLERANCE..=1.0 + TOLERANCE).contains(share))
 }
 
 /// Interpolates the corners of a deformed cell at local coordinates. Returns the interpolated point and its
 /// derivative by each local coordinate.
-fn in_block<D: Dim>(shares: Vec3, corners: &[Vec3]) -> (Vec3, [Vec3; 3]) {
+fn interpolate<D: Dim>(shares: Vec3, corners: &[Vec3]) -> (Vec3, [Vec3; 3]) {
     let mut place = Vec3::ZERO;
     let mut slopes = Vec3::AXES;
     slopes[..D::N].fill(Vec3::ZERO);
@@ -180,13 +180,13 @@ mod tests {
             Vec3::new(x + 0.2 * y, 1.5 * y - 0.1 * x * z, z + 0.3 * x * y)
         };
         let corners: Vec<Vec3> = (0..8).map(|index| crooked(corner(index))).collect();
-        let (inside, _) = in_block::<Dim3>(Vec3::new(0.9, 0.1, 0.5), &corners);
-        let (outside, _) = in_block::<Dim3>(Vec3::new(0.9, 1.1, 0.5), &corners);
-        assert!(is_in_block::<Dim3>(inside, &corners));
-        assert!(!is_in_block::<Dim3>(outside, &corners));
+        let (inside, _) = interpolate::<Dim3>(Vec3::new(0.9, 0.1, 0.5), &corners);
+        let (outside, _) = interpolate::<Dim3>(Vec3::new(0.9, 1.1, 0.5), &corners);
+        assert!(is_in_cell::<Dim3>(inside, &corners));
+        assert!(!is_in_cell::<Dim3>(outside, &corners));
         let flat: Vec<Vec3> = corners[..4].iter().map(|at| at.with_z(0.0)).collect();
-        assert!(is_in_block::<Dim2>(Vec3::new(0.6, 0.7, 0.0), &flat));
-        assert!(!is_in_block::<Dim2>(Vec3::new(0.05, 0.9, 0.0), &flat));
-        assert!(!is_in_block::<Dim2>(Vec3::splat(f32::NAN), &flat));
+        assert!(is_in_cell::<Dim2>(Vec3::new(0.6, 0.7, 0.0), &flat));
+        assert!(!is_in_cell::<Dim2>(Vec3::new(0.05, 0.9, 0.0), &flat));
+        assert!(!is_in_cell::<Dim2>(Vec3::splat(f32::NAN), &flat));
     }
 }

@@ -102,7 +102,7 @@ impl RigidState {
     }
 
     /// Sets the pose immediately, makes it the target, and wakes the body. The velocity does not change.
-    pub(crate) fn place<D: Dim>(
+    pub(crate) fn set_pose<D: Dim>(
         &mut self,
         position: Vec3,
         rotation: Rotation,
@@ -112,14 +112,14 @@ impl RigidState {
         let (position, rotation) = (flat::<D>(position), rotation.seen_in::<D>());
         self.move_to(position, rotation);
         (self.position_before, self.rotation_before) = (position, rotation);
-        self.stay();
+        self.target_present_pose();
         self.wake();
         Ok(())
     }
 
     /// Sets the target pose to the present pose.
-    pub(crate) fn stay(&mut self) {
-        (self.target, self.target_before) = (self.position, self.position);
+    pub(crate) fn target_present_pose(&mut self) {
+        (self.target_at_tick_end, self.target_now) = (self.position, self.position);
         self.target_rotation = self.rotation;
     }
 
@@ -142,15 +142,20 @@ impl RigidState {
 
     /// Integrates `acceleration` [m/s²] and air drag over `duration` [s]. Drag reduces the linear and the
     /// angular velocity at the decay rate `drag` [1/s].
-    pub(crate) fn fall<D: Dim>(&mut self, acceleration: Vec3, drag: f32, duration: f32) {
-        let gain = flat::<D>(acceleration) * duration;
-        let left = 1.0 / (1.0 + drag * duration);
-        self.velocity = (self.velocity + gain) * left;
-        self.angular_velocity *= left;
+    pub(crate) fn integrate_forces<D: Dim>(
+        &mut self,
+        acceleration: Vec3,
+        drag: f32,
+        duration: f32,
+    ) {
+        let change = flat::<D>(acceleration) * duration;
+        let kept = 1.0 / (1.0 + drag * duration);
+        self.velocity = (self.velocity + change) * kept;
+        self.angular_velocity *= kept;
     }
 
     /// Integrates position and rotation over `duration` [s].
-    pub(crate) fn drift(&mut self, duration: f32) {
+    pub(crate) fn integrate_pose(&mut self, duration: f32) {
         if !self.moves() {
             return;
         }
@@ -167,28 +172,28 @@ impl RigidState {
             // No torque acts, so the angular momentum is preserved. The inertia about the world axes has
             // changed with the rotation, so the angular velocity changes.
             self.angular_velocity =
-                inertia.spin_kept(self.angular_velocity, self.rotation, rotation);
+                inertia.angular_velocity_after(self.angular_velocity, self.rotation, rotation);
         }
         self.move_to(position, rotation);
     }
 
     /// Applies an impulse [N s] at the offset `lever` [m] from the body's position.
-    pub(crate) fn kick(&mut self, impulse: Vec3, lever: Vec3) {
+    pub(crate) fn apply_impulse(&mut self, impulse: Vec3, lever: Vec3) {
         self.velocity += impulse * self.inverse_mass();
-        self.twirl(impulse, lever);
+        self.apply_angular_impulse(impulse, lever);
     }
 
     /// Applies a contact impulse [N s] at the offset `lever` [m] from the body's position. Adds the mean
     /// contact force, the impulse divided by the substep length `duration` [s], to the reaction of this
     /// substep.
     #[inline(always)]
-    pub(crate) fn push_at(&mut self, impulse: Vec3, lever: Vec3, duration: f32) {
-        self.push(impulse, duration);
-        self.twirl(impulse, lever);
+    pub(crate) fn apply_contact_impulse_at(&mut self, impulse: Vec3, lever: Vec3, duration: f32) {
+        self.apply_contact_impulse(impulse, duration);
+        self.apply_angular_impulse(impulse, lever);
     }
 
     #[inline(always)]
-    fn twirl(&mut self, impulse: Vec3, lever: Vec3) {
+    fn apply_angular_impulse(&mut self, impulse: Vec3, lever: Vec3) {
         if self.can_be_turned() {
             let twist = times(&self.inverse_inertia, lever.cross(impulse));
             self.angular_velocity += twist;
@@ -197,40 +202,40 @@ impl RigidState {
 
     /// Returns the inverse effective mass [1/kg] at the offset `lever` [m] from the body's position, along
     /// the unit direction `way`.
-    pub(crate) fn yields(&self, lever: Vec3, way: Vec3) -> f32 {
-        let mut gain = self.inverse_mass();
+    pub(crate) fn inverse_effective_mass(&self, lever: Vec3, way: Vec3) -> f32 {
+        let mut inverse_mass = self.inverse_mass();
         if self.can_be_turned() {
             let arm = lever.cross(way);
             let turned = times(&self.inverse_inertia, arm);
-            gain += arm.dot(turned);
+            inverse_mass += arm.dot(turned);
         }
-        gain
+        inverse_mass
     }
 
     /// Returns the velocity change of a body point per unit impulse on that point along the unit direction
     /// `way` [1/kg]. The point is at the offset `lever` [m] from the body's position.
-    pub(crate) fn gain(&self, lever: Vec3, way: Vec3) -> Vec3 {
-        let gain = way * self.inverse_mass();
+    pub(crate) fn velocity_per_impulse(&self, lever: Vec3, way: Vec3) -> Vec3 {
+        let linear = way * self.inverse_mass();
         match self.can_be_turned() {
             true => {
                 let spin = times(&self.inverse_inertia, lever.cross(way));
-                gain + spin.cross(lever)
+                linear + spin.cross(lever)
             }
-            false => gain,
+            false => linear,
         }
     }
 
     /// Returns an upper bound of the inverse effective mass at a world-space point [m], valid for all
     /// directions of an impulse [1/kg].
     #[inline(always)]
-    pub(crate) fn yields_near(&self, at: Vec3) -> f32 {
-        let gain = self.inverse_mass();
+    pub(crate) fn max_inverse_effective_mass(&self, at: Vec3) -> f32 {
+        let inverse_mass = self.inverse_mass();
         if !self.can_be_turned() {
-            return gain;
+            return inverse_mass;
         }
         let lever = at - self.position;
         let [x, y, z] = self.inverse_inertia;
-        gain + (x[0] + y[1] + z[2]) * lever.dot(lever)
+        inverse_mass + (x[0] + y[1] + z[2]) * lever.dot(lever)
     }
 
     /// Returns whether contacts can change the angular velocity: the body is dynamic and awake.

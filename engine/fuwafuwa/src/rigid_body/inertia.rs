@@ -34,7 +34,7 @@ impl Inertia {
             Solid::OrientedBox { half, rotation, .. } => (rotation.axes(), cuboid(half)),
             Solid::Capsule { from, to, radius } => (
                 axes_along(to - from),
-                bar::<D>((to - from).length(), radius),
+                capsule::<D>((to - from).length(), radius),
             ),
         };
         let moments = turning::<D>(shares * mass);
@@ -70,13 +70,18 @@ impl Inertia {
         matrix
     }
 
-    /// Returns the angular velocity [rad/s] after a body with angular velocity `spin` has rotated from
+    /// Returns the angular velocity [rad/s] after a body with `angular_velocity` has rotated from
     /// `before` to `after` without torque. The angular momentum is preserved.
-    pub fn spin_kept(&self, spin: Vec3, before: Rotation, after: Rotation) -> Vec3 {
+    pub fn angular_velocity_after(
+        &self,
+        angular_velocity: Vec3,
+        before: Rotation,
+        after: Rotation,
+    ) -> Vec3 {
         let axes = self.axes.into_iter().zip(self.moments.to_array());
         let momentum = axes.fold(Vec3::ZERO, |sum, (axis, moment)| {
             let axis = before.apply(axis);
-            sum + axis * (moment * axis.dot(spin))
+            sum + axis * (moment * axis.dot(angular_velocity))
         });
         let axes = self.axes.into_iter().zip(self.inverse.to_array());
         axes.fold(Vec3::ZERO, |sum, (axis, inverse)| {
@@ -92,7 +97,7 @@ pub fn times(matrix: &Matrix, vector: Vec3) -> Vec3 {
     Vec3::from([0, 1, 2].map(|row: usize| matrix[row].dot(vector)))
 }
 
-// `cuboid`, `ball` and `bar` return the principal moments of inertia per unit mass [m²].
+// `cuboid`, `ball` and `capsule` return the principal moments of inertia per unit mass [m²].
 
 fn cuboid(half: Vec3) -> Vec3 {
     let [x, y, z] = half.to_array();
@@ -109,16 +114,20 @@ fn ball<D: Dim>(radius: f32) -> Vec3 {
 }
 
 /// Returns the principal moments of inertia of a capsule along the first axis, per unit mass [m²]. The
-/// capsule consists of a cylinder of length `long` [m] and two half balls, in 2D of a rectangle and two half
+/// capsule consists of a cylinder of `length` [m] and two half balls, in 2D of a rectangle and two half
 /// discs.
-fn bar<D: Dim>(long: f32, radius: f32) -> Vec3 {
+fn capsule<D: Dim>(length: f32, radius: f32) -> Vec3 {
     let squared = radius * radius;
     // `between` and `round` are the volumes of the cylinder and of both half balls. `middle` is the distance
     // of the centroid of a half ball from its flat side.
     let (between, round, middle) = match D::N {
-        2 => (2.0 * radius * long, PI * squared, 4.0 * radius / (3.0 * PI)),
+        2 => (
+            2.0 * radius * length,
+            PI * squared,
+            4.0 * radius / (3.0 * PI),
+        ),
         _ => (
-            PI * squared * long,
+            PI * squared * length,
             4.0 / 3.0 * PI * squared * radius,
             3.0 / 8.0 * radius,
         ),
@@ -126,10 +135,10 @@ fn bar<D: Dim>(long: f32, radius: f32) -> Vec3 {
     let whole = between + round;
     let (between, round) = (between / whole, round / whole);
     let own = ball::<D>(radius).x;
-    let ends = own + 0.25 * long * long + long * middle;
+    let ends = own + 0.25 * length * length + length * middle;
     let side = match D::N {
-        2 => (long * long + 4.0 * squared) / 12.0,
-        _ => long * long / 12.0 + 0.25 * squared,
+        2 => (length * length + 4.0 * squared) / 12.0,
+        _ => length * length / 12.0 + 0.25 * squared,
     };
     let aside = between * side + round * ends;
     Vec3::new(0.5 * between * squared + round * own, aside, aside)
@@ -137,11 +146,11 @@ fn bar<D: Dim>(long: f32, radius: f32) -> Vec3 {
 
 /// Returns three orthonormal axes, the first of them parallel to `way`.
 fn axes_along(way: Vec3) -> [Vec3; 3] {
-    let long = way.length();
-    if long <= 0.0 {
+    let length = way.length();
+    if length <= 0.0 {
         return Rotation::NONE.axes();
     }
-    let first = way * (1.0 / long);
+    let first = way * (1.0 / length);
     let [second, third] = perpendiculars(first);
     [first, second, third]
 }
@@ -186,7 +195,7 @@ mod tests {
     #[test]
     fn moments_match_numeric_integration() {
         let [x, y, z] = [0.3, 0.5, 0.9];
-        let long = Solid::Capsule {
+        let capsule = Solid::Capsule {
             from: Vec3::new(-x, 0.0, 0.0),
             to: Vec3::new(x, 0.0, 0.0),
             radius: 0.2,
@@ -201,8 +210,8 @@ mod tests {
         };
         check::<Dim3>(cuboid(Vec3::new(x, y, z)));
         check::<Dim2>(cuboid(Vec3::new(x, y, f32::MAX)));
-        check::<Dim3>(long);
-        check::<Dim2>(long);
+        check::<Dim3>(capsule);
+        check::<Dim2>(capsule);
         check::<Dim3>(ball);
         check::<Dim2>(ball);
     }
@@ -225,7 +234,7 @@ mod tests {
         let mut most = 0.0f32;
         for _ in 0..5000 {
             let next = rotation.then(Rotation::about(spin, spin.length() * 0.001));
-            spin = inertia.spin_kept(spin, rotation, next);
+            spin = inertia.angular_velocity_after(spin, rotation, next);
             rotation = next;
             most = most.max(spin[0].abs());
         }

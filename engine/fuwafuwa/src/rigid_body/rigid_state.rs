@@ -56,11 +56,11 @@ pub struct RigidState {
     /// Inverse inertia matrix about the world axes [1/(kg m²)].
     pub(super) inverse_inertia: Matrix,
     /// Target position for the end of the tick [m].
-    pub(super) target: Vec3,
+    pub(super) target_at_tick_end: Vec3,
     /// Target rotation for the end of the tick.
     pub(super) target_rotation: Rotation,
     /// Target position in the present substep [m]. During a tick it moves linearly to `target`.
-    pub(super) target_before: Vec3,
+    pub(super) target_now: Vec3,
     /// Velocity of the target in this tick [m/s].
     pub(super) target_velocity: Vec3,
     /// Force and torque on the body in each substep of the last tick.
@@ -71,7 +71,7 @@ hash_state! {
     struct RigidState {
         friction, restitution, motion_type, layers, is_sensor, user_data, local_shape, shape, position, velocity,
         rotation, angular_velocity, asleep, sleep_timer, position_before, rotation_before, inertia,
-        inverse_inertia, target, target_rotation, target_before, target_velocity, reactions,
+        inverse_inertia, target_at_tick_end, target_rotation, target_now, target_velocity, reactions,
     }
 }
 
@@ -117,9 +117,9 @@ impl<D: Dim> From<&RigidBody<D>> for RigidState {
             rotation_before: rotation,
             inertia: body.motion_type.inertia::<D>(&local_shape),
             inverse_inertia: [Vec3::ZERO; 3],
-            target,
+            target_at_tick_end: target,
             target_rotation: target_rotation.unwrap_or(rotation),
-            target_before: target,
+            target_now: target,
             target_velocity: Vec3::ZERO,
             reactions: Vec::new(),
         };
@@ -139,7 +139,7 @@ impl RigidState {
             position: D::Vector::from_vec3(self.position),
             rotation: self.rotation,
             velocity: Velocity::from(self.twist()),
-            target_position: follows.then(|| D::Vector::from_vec3(self.target)),
+            target_position: follows.then(|| D::Vector::from_vec3(self.target_at_tick_end)),
             target_rotation: follows.then_some(self.target_rotation),
             friction: self.friction,
             restitution: self.restitution,
@@ -155,7 +155,7 @@ impl RigidState {
         if self.motion_type == MotionType::Fixed {
             // The body may have moved before its motion type became fixed.
             (self.velocity, self.target_velocity) = (Vec3::ZERO, Vec3::ZERO);
-            self.stay();
+            self.target_present_pose();
         }
         if matches!(
             self.motion_type,
@@ -171,7 +171,7 @@ impl RigidState {
         let inertia = motion_type.inertia::<D>(&self.local_shape);
         check_motion_type(motion_type, &self.local_shape, inertia.as_ref())?;
         if discriminant(&motion_type) != discriminant(&self.motion_type) {
-            self.stay();
+            self.target_present_pose();
         }
         (self.motion_type, self.inertia) = (motion_type, inertia);
         self.clear_unused_motion();
@@ -204,7 +204,7 @@ impl RigidState {
 
     /// Returns the target position [m].
     pub fn target_position(&self) -> Vec3 {
-        self.target
+        self.target_at_tick_end
     }
 
     /// Returns the target rotation.
@@ -248,7 +248,7 @@ impl RigidState {
         self.require_target()?;
         let expected = "within 1e6 m of the origin";
         require(is_within_reach(target), "position", expected, target)?;
-        self.target = target;
+        self.target_at_tick_end = target;
         Ok(())
     }
 
@@ -266,7 +266,7 @@ impl RigidState {
     /// kinematic or coupled body, reach their goals at the end of the tick.
     pub(crate) fn start_tick(&mut self, duration: f32) {
         (self.position_before, self.rotation_before) = (self.position, self.rotation);
-        self.target_velocity = (self.target - self.target_before) * (1.0 / duration);
+        self.target_velocity = (self.target_at_tick_end - self.target_now) * (1.0 / duration);
         if self.follows_target() && self.rotation != self.target_rotation
             || self.motion_type == MotionType::Kinematic
         {
@@ -279,7 +279,7 @@ impl RigidState {
     /// Ends a tick: the target stops, and a kinematic or coupled body takes its target rotation. A body that
     /// is non-finite or out of range is reset to its pose at the start of the tick, with velocity 0.
     pub(crate) fn end_tick(&mut self) {
-        self.target_before = self.target;
+        self.target_now = self.target_at_tick_end;
         if self.follows_target() && self.rotation != self.target_rotation {
             self.move_to(self.position, self.target_rotation);
         }
@@ -297,14 +297,14 @@ impl RigidState {
     /// Starts a substep of `duration` [s]: moves the target by its velocity, and appends an empty reaction.
     /// Accelerates a coupled body towards the target. Gives a kinematic body the velocity with which it
     /// reaches the target in this substep.
-    pub(crate) fn pull(&mut self, duration: f32) {
-        self.target_before += self.target_velocity * duration;
+    pub(crate) fn start_substep(&mut self, duration: f32) {
+        self.target_now += self.target_velocity * duration;
         let mut reaction = ReactionSum::default();
         match self.motion_type {
             MotionType::Fixed => return,
             MotionType::Dynamic { .. } => {}
             MotionType::Kinematic => {
-                self.velocity = (self.target_before - self.position) * (1.0 / duration);
+                self.velocity = (self.target_now - self.position) * (1.0 / duration);
             }
             MotionType::Coupled {
                 mass,
@@ -315,7 +315,7 @@ impl RigidState {
                 // Reduces the stiffness to the stability limit of this substep.
                 let stiffness = stiffness.min(0.25 * mass / (duration * duration));
                 let damper = 2.0 * damping * (stiffness * mass).sqrt();
-                let stretch = self.target_before - self.position;
+                let stretch = self.target_now - self.position;
                 let slip = self.target_velocity - self.velocity;
                 let wish = stretch * stiffness + slip * damper;
                 let strength = wish.length();
@@ -334,7 +334,7 @@ impl RigidState {
     /// Applies a contact impulse [N s]. Adds the mean contact force, the impulse divided by the substep
     /// length `duration` [s], to the reaction of this substep.
     #[inline(always)]
-    pub(crate) fn push(&mut self, impulse: Vec3, duration: f32) {
+    pub(crate) fn apply_contact_impulse(&mut self, impulse: Vec3, duration: f32) {
         let inverse_mass = self.inverse_mass();
         for axis in 0..3 {
             if inverse_mass > 0.0 {

@@ -20,8 +20,8 @@ impl RigidState {
     pub fn check(&self) -> Result<(), Error> {
         let positions = [
             ("position", self.position),
-            ("target_position", self.target),
-            ("target_position", self.target_before),
+            ("target_position", self.target_at_tick_end),
+            ("target_position", self.target_now),
             ("position", self.position_before),
         ];
         for (field, position) in positions {
@@ -73,8 +73,8 @@ impl RigidState {
         self.local_shape = Shape::<D>::of(&self.local_shape).solid();
         let positions = [
             &mut self.position,
-            &mut self.target,
-            &mut self.target_before,
+            &mut self.target_at_tick_end,
+            &mut self.target_now,
         ];
         let others = [&mut self.position_before, &mut self.velocity];
         for vector in positions.into_iter().chain(others) {

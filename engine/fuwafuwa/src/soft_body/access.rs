@@ -55,7 +55,7 @@ impl<D: Dim> SoftBody<D> {
     /// be outdated.
     #[inline(always)]
     pub(crate) fn exposed_faces(&self, element: ElementId) -> Option<u8> {
-        self.cache.bare.get(element.index()).copied()
+        self.cache.exposed_faces.get(element.index()).copied()
     }
 
     /// Returns the mask of the voxels around an element that share a node with the element, with the bits of
@@ -63,13 +63,13 @@ impl<D: Dim> SoftBody<D> {
     /// Valid only if the element has exposed faces.
     #[inline(always)]
     pub(crate) fn connected_voxels(&self, element: ElementId) -> u32 {
-        self.cache.bound[element]
+        self.cache.connected_voxels[element]
     }
 
     /// Returns the batches of all elements, with their rotations and their forces.
     #[inline(always)]
     pub(crate) fn element_forces(&self) -> &ElementBatches<D> {
-        &self.state.blocks
+        &self.state.batches
     }
 
     /// Returns the nodes at which a crack can start or continue.

@@ -42,10 +42,16 @@ impl<D: Dim> SoftBody<D> {
     /// inverse.
     pub(crate) fn elastic_part(&self, id: ElementId, element: &Element) -> [Vec3; 3] {
         let (_, gradient) = self.deformation(element);
-        let Some(undone) = self.state.blocks.plastic_inverse(id) else {
+        let Some(plastic_inverse) = self.state.batches.plastic_inverse(id) else {
             return gradient;
         };
-        let column = |j: usize| Vec3::new(undone[0][j], undone[1][j], undone[2][j]);
+        let column = |j: usize| {
+            Vec3::new(
+                plastic_inverse[0][j],
+                plastic_inverse[1][j],
+                plastic_inverse[2][j],
+            )
+        };
         gradient.map(|row| Vec3::from([0, 1, 2].map(|j: usize| row.dot(column(j)))))
     }
 

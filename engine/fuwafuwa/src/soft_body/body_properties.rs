@@ -13,7 +13,7 @@ pub struct BodyProperties {
     pub damping: f64,
     /// Angular frequency of the slowest mode [1/s]: π √(Y/ρ) / w. Young's modulus Y and density ρ are means
     /// over the voxels; w is the width of a square or cube with the volume of the body.
-    pub slow: f64,
+    pub slowest_frequency: f64,
     /// Friction coefficient; mean over the voxels.
     pub friction: f32,
     /// Lowest strength of the materials in use [Pa].
@@ -22,7 +22,7 @@ pub struct BodyProperties {
     pub fastest_wave: f64,
     /// Angular frequency of the fastest mode [1/s], the breathing mode of a single voxel of the material in
     /// which it is fastest.
-    pub fastest_swing: f64,
+    pub fastest_frequency: f64,
 }
 
 impl BodyProperties {
@@ -51,14 +51,14 @@ impl BodyProperties {
         let width = f64::from(grid.voxel_size()) * root(total, D::N);
         let strengths = used().map(|(_, material)| material.strength);
         let waves = used().map(|(_, material)| material.wave_speed());
-        let swings = used().map(|(_, material)| material.voxel_swing(D::N));
+        let breathing_speeds = used().map(|(_, material)| material.breathing_speed(D::N));
         Self {
             damping: mean(&|material| f64::from(material.damping)),
-            slow: std::f64::consts::PI * (young / density).sqrt() / width,
+            slowest_frequency: std::f64::consts::PI * (young / density).sqrt() / width,
             friction: mean(&|material| f64::from(material.friction)) as f32,
             least_strength: strengths.fold(f32::INFINITY, f32::min),
             fastest_wave: waves.fold(0.0, f64::max),
-            fastest_swing: swings.fold(0.0, f64::max) / f64::from(grid.voxel_size()),
+            fastest_frequency: breathing_speeds.fold(0.0, f64::max) / f64::from(grid.voxel_size()),
         }
     }
 }

@@ -46,19 +46,19 @@ pub struct State<D: Dim> {
     /// Batches of elements. Snapshots contain only the rotation and plastic deformation of each element and
     /// the forces of the last substep. Each substep continues from the last rotations, and the last forces
     /// decide where the next crack runs.
-    pub blocks: ElementBatches<D>,
+    pub batches: ElementBatches<D>,
 }
 
 hash_state! {
     [D: Dim] struct State<D> {
         position, velocity, mass, inverse_mass, fixed, damage, cooldowns, ahead, gravity_scale, layers,
-        user_data, placed, blocks,
+        user_data, placed, batches,
     }
 }
 
 impl<D: Dim> State<D> {
     /// Creates the state of a body without nodes.
-    pub fn new(blocks: ElementBatches<D>) -> Self {
+    pub fn new(batches: ElementBatches<D>) -> Self {
         Self {
             position: IndexVec::default(),
             velocity: IndexVec::default(),
@@ -72,7 +72,7 @@ impl<D: Dim> State<D> {
             layers: Layers::default(),
             user_data: 0,
             placed: false,
-            blocks,
+            batches,
         }
     }
 

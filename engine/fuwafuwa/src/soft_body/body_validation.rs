@@ -25,11 +25,11 @@ impl<D: Dim> SoftBody<D> {
             "states",
         )?;
         ensure(
-            self.state.blocks.is_sound(&self.topology.mesh),
+            self.state.batches.is_sound(&self.topology.mesh),
             "states of elements",
         )?;
-        let pull = self.state.gravity_scale;
-        ensure(pull.abs() <= MAX_GRAVITY_SCALE, "gravity scale")?;
+        let gravity_scale = self.state.gravity_scale;
+        ensure(gravity_scale.abs() <= MAX_GRAVITY_SCALE, "gravity scale")?;
         let points = self.state.cooldowns.points();
         let is_known = { points }.all(|at| self.topology.connectivity.contains(at));
         ensure(is_known, "cooldown points")?;
@@ -40,10 +40,10 @@ impl<D: Dim> SoftBody<D> {
                     node.at
                 )))
             };
-            if !self.is_somewhere(id) {
+            if !self.has_valid_state(id) {
                 return defect("has a position or velocity that is not finite or leaves the plane");
             }
-            if !self.weighs_right(id) {
+            if !self.has_valid_mass(id) {
                 return defect("has a mass that does not match its elements");
             }
         }
@@ -61,14 +61,14 @@ impl<D: Dim> SoftBody<D> {
             ..
         } = &self.topology;
         let asleep = |id: ElementId| pieces.list[pieces.of_element(id)].asleep;
-        let (blocks, plasticities) = (&mut self.state.blocks, plasticities(materials));
-        blocks.restore(mesh, grid, &plasticities, asleep);
+        let (batches, plasticities) = (&mut self.state.batches, plasticities(materials));
+        batches.restore(mesh, grid, &plasticities, asleep);
         self.rebuild();
     }
 
     /// Returns whether the position, velocity and extrapolated position of a node are finite, and in 2D have
     /// third coordinate 0, and whether its damage is not NaN.
-    fn is_somewhere(&self, id: NodeId) -> bool {
+    fn has_valid_state(&self, id: NodeId) -> bool {
         let state = &self.state;
         let rows = [&state.position, &state.velocity, &state.ahead].map(|rows| rows[id]);
         let is_flat = |row: &Row| row[D::N..].iter().all(|&k| k == 0.0);
@@ -77,7 +77,7 @@ impl<D: Dim> SoftBody<D> {
 
     /// Returns whether the mass and the inverse mass of a node are exactly those that follow from the
     /// elements that carry the node.
-    fn weighs_right(&self, id: NodeId) -> bool {
+    fn has_valid_mass(&self, id: NodeId) -> bool {
         self.state.mass[id] == self.mass_of(id)
             && self.state.inverse_mass[id] == self.inverse_mass_of(id)
     }

@@ -14,7 +14,7 @@ use crate::topology::changes::History;
 #[derive(Clone, Debug, Default)]
 pub struct Cache {
     /// Properties of the body, combined from its materials.
-    pub blend: BodyProperties,
+    pub properties: BodyProperties,
     /// Nodes of awake pieces, ascending; outdated while `awake_is_stale`.
     pub awake: Vec<NodeId>,
     /// Whether `awake` must be recomputed before use.
@@ -22,11 +22,11 @@ pub struct Cache {
     /// Nodes at which a crack can start or continue, with the tension that each withstands.
     pub breakable: BreakableNodes,
     /// Mask of the exposed faces of each level-0 element: bit 2 · axis + side (0 = low, 1 = high).
-    pub bare: IndexVec<ElementId, u8>,
+    pub exposed_faces: IndexVec<ElementId, u8>,
     /// For each element with exposed faces, mask of the voxels around the element that share a node with the
     /// element; see
     /// [`Connectivity::connected_voxels`](crate::topology::connectivity::Connectivity::connected_voxels).
-    pub bound: IndexVec<ElementId, u32>,
+    pub connected_voxels: IndexVec<ElementId, u32>,
     /// History of recent cracks and removals, which callers read through bookmarks.
     pub history: History,
     /// Rigid motion of each piece at the last damping round, relative to which positions are extrapolated.

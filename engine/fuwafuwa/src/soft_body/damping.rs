@@ -123,7 +123,7 @@ pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct PieceDamping {
     /// Damping of the vibration: of all motion relative to the rigid motion of the piece.
-    pub swing: f32,
+    pub vibration: f32,
     /// Damping of the angular velocity of the piece.
     pub spin: f32,
     /// Damping of all motion of the piece by the air and by contacts.
@@ -135,42 +135,54 @@ impl PieceDamping {
     pub fn over(self, duration: f32) -> Self {
         let share = |rate: f32| (rate * duration).min(1.0);
         Self {
-            swing: share(self.swing),
+            vibration: share(self.vibration),
             spin: share(self.spin),
             drag: share(self.drag),
         }
     }
 }
 
-/// Damps the velocities of a body, and stores the rigid motion of each piece in the cache. `slowing` holds
+/// Damps the velocities of a body, and stores the rigid motion of each piece in the cache. `damping` holds
 /// for each piece the fractions of velocity that the piece loses.
-pub fn slow_down<D: Dim>(
+pub fn apply_damping<D: Dim>(
     body: &mut SoftBody<D>,
     motions: &[PieceMotion],
-    slowing: &[PieceDamping],
+    damping: &[PieceDamping],
 ) {
     let rigid: Vec<RigidMotion> = motions.iter().map(PieceMotion::rigid).collect();
     body.cache.rigid.clear();
     body.cache
         .rigid
         .extend(rigid.iter().map(RigidMotion::roughly));
-    if slowing
+    if damping
         .iter()
-        .all(|slowing| *slowing == PieceDamping::default())
+        .all(|damping| *damping == PieceDamping::default())
     {
         return;
     }
-    // New velocity of a node at x: a fraction of its velocity plus the velocity at x of a rigid motion,
-    // `pace`. As a result, the velocity of the centre of mass is multiplied by 1 − drag, the angular velocity
-    // by (1 − drag)(1 − spin), and the vibration by (1 − drag)(1 − swing).
-    let paces: Vec<_> = rigid
+    // New velocity of a node at x: a fraction of its velocity plus the velocity at x of a rigid motion. As a
+    // result, the velocity of the centre of mass is multiplied by 1 − drag, the angular velocity by (1 −
+    // drag)(1 − spin), and the vibration by (1 − drag)(1 − vibration).
+    let new_velocities: Vec<_> = rigid
         .iter()
-        .zip(slowing)
-        .map(|(rigid, &PieceDamping { swing, spin, drag })| {
-            let kept = 1.0 - drag;
-            let pace = rigid.times(f64::from(kept * swing), f64::from(kept * (swing - spin)));
-            (kept * (1.0 - swing), pace.roughly())
-        })
+        .zip(damping)
+        .map(
+            |(
+                rigid,
+                &PieceDamping {
+                    vibration,
+                    spin,
+                    drag,
+                },
+            )| {
+                let kept = 1.0 - drag;
+                let rigid_velocity = rigid.times(
+                    f64::from(kept * vibration),
+                    f64::from(kept * (vibration - spin)),
+                );
+                (kept * (1.0 - vibration), rigid_velocity.roughly())
+            },
+        )
         .collect();
     let (inverse_mass, position, pieces) = (
         &body.state.inverse_mass,
@@ -182,9 +194,9 @@ pub fn slow_down<D: Dim>(
         let [velocities] = rows.lists;
         for &id in rows.nodes {
             if inverse_mass[id] != 0.0 {
-                let (kept, pace) = &paces[pieces.of_node(id).index()];
+                let (kept, rigid_velocity) = &new_velocities[pieces.of_node(id).index()];
                 let velocity = &mut velocities[id.index() - rows.first];
-                *velocity = *velocity * *kept + pace.at::<D>(position[id]);
+                *velocity = *velocity * *kept + rigid_velocity.at::<D>(position[id]);
             }
         }
     });

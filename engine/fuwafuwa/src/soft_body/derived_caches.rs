@@ -13,8 +13,12 @@ impl<D: Dim> SoftBody<D> {
             cache,
         } = self;
         state.make_room(topology.mesh.node_capacity());
-        cache.bare.resize(topology.mesh.element_capacity(), 0);
-        cache.bound.resize(topology.mesh.element_capacity(), 0);
+        cache
+            .exposed_faces
+            .resize(topology.mesh.element_capacity(), 0);
+        cache
+            .connected_voxels
+            .resize(topology.mesh.element_capacity(), 0);
         topology.pieces.make_room(&topology.mesh);
     }
 
@@ -71,14 +75,16 @@ impl<D: Dim> SoftBody<D> {
             // Lattice point at the low corner of the voxel. Seen from this point, the voxel is on the high
             // side along every axis, that is, in the last octant.
             let (around, octant) = (self.topology.connectivity.around(voxel), D::CORNERS - 1);
-            let mut bare = 0;
+            let mut exposed_faces = 0;
             for axis in 0..D::N {
-                bare |= u8::from(!around.is_closed(octant, axis)) << (2 * axis);
-                bare |= u8::from(!around.is_far_face_closed(octant, axis)) << (2 * axis + 1);
+                exposed_faces |= u8::from(!around.is_closed(octant, axis)) << (2 * axis);
+                exposed_faces |=
+                    u8::from(!around.is_far_face_closed(octant, axis)) << (2 * axis + 1);
             }
-            self.cache.bare[owner] = bare;
-            if bare != 0 {
-                self.cache.bound[owner] = self.topology.connectivity.connected_voxels(voxel);
+            self.cache.exposed_faces[owner] = exposed_faces;
+            if exposed_faces != 0 {
+                self.cache.connected_voxels[owner] =
+                    self.topology.connectivity.connected_voxels(voxel);
             }
         }
     }

@@ -43,7 +43,7 @@ use std::marker::PhantomData;
 /// Smallest number of batches that are evaluated on several threads. A body with this many batches has about
 /// the smallest number of nodes that [`threads`] distributes over threads.
 #[cfg(feature = "parallel")]
-const LEAST_PARALLEL: usize = 1024;
+const MIN_PARALLEL_BATCHES: usize = 1024;
 
 /// Number of padding entries after the last force. A load of four numbers that begins at the last force then
 /// stays in bounds.
@@ -58,19 +58,19 @@ pub struct ElementBatches<D: Dim> {
     /// [`Law::Endo2004`].
     flows: Vec<Option<PlasticFlowLimits>>,
     voxel_size: f32,
-    blocks: Vec<Batch>,
+    batches: Vec<Batch>,
     /// Indices of the batches that have both elements and vacant lanes, by the common properties of their
     /// elements.
     open: BTreeMap<BatchKey, BTreeSet<u32>>,
     /// Indices of the batches without elements. The key is the number of nodes per element, and whether each
     /// lane has class data of its own.
     empty: BTreeMap<(u32, bool), Vec<u32>>,
-    /// Start in `numbers` of the data of each element class that has batches of its own, by the index of the
-    /// class.
-    element_classes: BTreeMap<u32, u32>,
-    numbers: Vec<f32>,
+    /// Start in `class_data` of the data of each element class that has batches of its own, by the index of
+    /// the class.
+    class_data_starts: BTreeMap<u32, u32>,
+    class_data: Vec<f32>,
     /// Class data of pooled batches; each value is stored once for each lane.
-    pooled: Vec<Eight>,
+    pooled_class_data: Vec<Eight>,
     /// Index of the batch, and lane, of each element, by element id; the index is [`VACANT`] if no batch
     /// contains the element.
     assigned: IndexVec<ElementId, (u32, u8)>,
@@ -123,12 +123,12 @@ impl<D: Dim> ElementBatches<D> {
             moduli: moduli::<D>(elasticities),
             flows: Vec::new(),
             voxel_size,
-            blocks: Vec::new(),
+            batches: Vec::new(),
             open: BTreeMap::new(),
             empty: BTreeMap::new(),
-            element_classes: BTreeMap::new(),
-            numbers: Vec::new(),
-            pooled: Vec::new(),
+            class_data_starts: BTreeMap::new(),
+            class_data: Vec::new(),
+            pooled_class_data: Vec::new(),
             assigned: IndexVec::default(),
             slots: IndexVec::default(),
             nodes: vec![VACANT; LANES],
@@ -163,17 +163,17 @@ impl<D: Dim> ElementBatches<D> {
     /// Returns the rows of the plastic inverse G of an element ([`crate::soft_body::plasticity`]); `None` if
     /// the material of the element is elastic.
     pub fn plastic_inverse(&self, id: ElementId) -> Option<[Vec3; 3]> {
-        let &(block, lane) = self.assigned.get(id.index())?;
-        let block = self.blocks.get(block as usize)?;
-        let undone = block.undone.as_ref()?;
-        Some(undone.get(lane as usize))
+        let &(batch, lane) = self.assigned.get(id.index())?;
+        let batch = self.batches.get(batch as usize)?;
+        let plastic_inverse = batch.plastic_inverse.as_ref()?;
+        Some(plastic_inverse.get(lane as usize))
     }
 
     /// Sets the plastic inverse of an element, given by rows.
-    pub fn set_plastic_inverse(&mut self, id: ElementId, undone: [Vec3; 3]) {
-        let (block, lane) = self.assigned[id];
-        if let Some(own) = &mut self.blocks[block as usize].undone {
-            own.set(lane as usize, undone);
+    pub fn set_plastic_inverse(&mut self, id: ElementId, plastic_inverse: [Vec3; 3]) {
+        let (batch, lane) = self.assigned[id];
+        if let Some(own) = &mut self.batches[batch as usize].plastic_inverse {
+            own.set(lane as usize, plastic_inverse);
         }
     }
 
@@ -185,7 +185,7 @@ impl<D: Dim> ElementBatches<D> {
     /// Computes the forces of all awake elements at the given node positions [m].
     pub fn evaluate(&mut self, position: &[Row]) {
         #[cfg(feature = "parallel")]
-        if self.blocks.len() >= LEAST_PARALLEL && rayon::current_num_threads() > 1 {
+        if self.batches.len() >= MIN_PARALLEL_BATCHES && rayon::current_num_threads() > 1 {
             use rayon::prelude::*;
             let groups: Vec<Group> = self.groups().collect();
             let groups = groups.into_par_iter().with_min_len(8);
@@ -210,8 +210,8 @@ impl<D: Dim> ElementBatches<D> {
             law,
             moduli,
             flows,
-            numbers,
-            pooled,
+            class_data,
+            pooled_class_data,
             nodes,
             ..
         } = self;
@@ -219,19 +219,19 @@ impl<D: Dim> ElementBatches<D> {
             law: *law,
             moduli,
             flows,
-            numbers,
-            pooled,
+            class_data,
+            pooled_class_data,
             nodes,
         };
         let mut forces = &mut self.forces[LANES * D::N..];
         let mut first = LANES;
-        self.blocks.chunks_mut(GROUP).map(move |blocks| {
+        self.batches.chunks_mut(GROUP).map(move |batches| {
             // Forces are stored in the order of the batches, so the forces of the group end with those of its
             // last batch.
-            let end = blocks.last().map_or(first, Batch::end);
+            let end = batches.last().map_or(first, Batch::end);
             let (own, others) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
             let group = Group {
-                blocks,
+                batches,
                 forces: own,
                 first,
                 shared,
@@ -296,14 +296,14 @@ impl<D: Dim> ElementBatches<D> {
     /// Returns whether a batch contains the element.
     pub fn has(&self, id: ElementId) -> bool {
         let assigned = self.assigned.get(id.index());
-        assigned.is_some_and(|&(block, _)| block != VACANT)
+        assigned.is_some_and(|&(batch, _)| batch != VACANT)
     }
 
     /// Sets the rotation of a 3D element to a unit quaternion (x, y, z, w). The iteration of the next
     /// evaluation starts from this rotation.
     pub fn set_rotation(&mut self, id: ElementId, turned: [f32; 4]) {
-        let (block, lane) = self.assigned[id];
-        let rotation = &mut self.blocks[block as usize].rotation;
+        let (batch, lane) = self.assigned[id];
+        let rotation = &mut self.batches[batch as usize].rotation;
         for (all, part) in rotation.iter_mut().zip(turned) {
             all[lane as usize] = part;
         }
@@ -312,16 +312,16 @@ impl<D: Dim> ElementBatches<D> {
     /// Turns the rotations of all elements, and the forces of the last evaluation, by `rotation`. Rotations
     /// of elements are stored as cosine and sine in 2D, as quaternions in 3D.
     pub fn rotate(&mut self, rotation: Rotation) {
-        for block in &mut self.blocks {
+        for batch in &mut self.batches {
             for lane in 0..LANES {
-                let turned = match (D::N, block.rotation.map(|part| part[lane])) {
+                let turned = match (D::N, batch.rotation.map(|part| part[lane])) {
                     (2, [cosine, sine, ..]) => {
                         let [x, y, _] = rotation.apply(Vec3::new(cosine, sine, 0.0)).to_array();
                         [x, y, 0.0, 0.0]
                     }
                     (_, turned) => rotation.after(turned),
                 };
-                for (all, part) in block.rotation.iter_mut().zip(turned) {
+                for (all, part) in batch.rotation.iter_mut().zip(turned) {
                     all[lane] = part;
                 }
             }
@@ -337,36 +337,41 @@ impl<D: Dim> ElementBatches<D> {
     /// Number of awake elements with negative volume, that is, turned inside out, in the last evaluation.
     /// Always 0 under [`Law::Endo2004`], which does not check for inversion.
     pub fn inverted_count(&self) -> u32 {
-        let awake = self.blocks.iter().filter(|block| !block.is_idle());
-        let inverted = |block: &Batch| (block.inverted & !block.vacant).count_ones();
+        let awake = self.batches.iter().filter(|batch| !batch.is_idle());
+        let inverted = |batch: &Batch| (batch.inverted & !batch.vacant).count_ones();
         awake.map(inverted).sum()
     }
 
     /// Adds the velocity change of one substep by elastic forces and gravity to velocities [m/s].
-    pub fn kick(&self, kick: &VelocityUpdate, velocity: &mut [Row]) {
-        threads::map(threads::rows(kick.nodes, [velocity]), |rows| {
-            on_widest_lanes!(simd => self.kick_by(simd, kick, rows));
+    pub fn update_velocities(&self, update: &VelocityUpdate, velocity: &mut [Row]) {
+        threads::map(threads::rows(update.nodes, [velocity]), |rows| {
+            on_widest_lanes!(simd => self.update_velocities_by(simd, update, rows));
         });
     }
 
     #[inline(always)]
-    fn kick_by<S: Simd>(&self, simd: S, kick: &VelocityUpdate, rows: RowChunk<Row, 1>) {
+    fn update_velocities_by<S: Simd>(
+        &self,
+        simd: S,
+        update: &VelocityUpdate,
+        rows: RowChunk<Row, 1>,
+    ) {
         let [velocity] = rows.lists;
         for &id in rows.nodes {
             let node = id.index();
-            let inverse_mass = kick.inverse_mass[node];
+            let inverse_mass = update.inverse_mass[node];
             if inverse_mass == 0.0 {
                 continue;
             }
-            let acceleration = self.force_by(simd, id) * inverse_mass + kick.gravity;
+            let acceleration = self.force_by(simd, id) * inverse_mass + update.gravity;
             let velocity = &mut velocity[node - rows.first];
-            *velocity += acceleration * kick.duration;
+            *velocity += acceleration * update.duration;
         }
     }
 
     fn rotation_of(&self, id: ElementId) -> [f32; 4] {
         match self.assigned.get(id.index()) {
-            Some(&(block, lane)) if block != VACANT => self.blocks[block as usize]
+            Some(&(batch, lane)) if batch != VACANT => self.batches[batch as usize]
                 .rotation
                 .map(|part| part[lane as usize]),
             // Identity: (cosine, sine) in 2D, quaternion (x, y, z, w) in 3D.
@@ -424,12 +429,12 @@ mod tests {
         }
         for (id, _) in mesh.nodes() {
             let bits =
-                |blocks: &ElementBatches<D>| blocks.force_on(id).to_array().map(f32::to_bits);
+                |batches: &ElementBatches<D>| batches.force_on(id).to_array().map(f32::to_bits);
             assert_eq!(bits(&wide), bits(&other));
         }
         let nodes: Vec<NodeId> = mesh.nodes().map(|(id, _)| id).collect();
         let inverse_mass: Vec<f32> = (0..position.len()).map(|id| (id % 7) as f32).collect();
-        let kick = VelocityUpdate {
+        let update = VelocityUpdate {
             nodes: &nodes,
             inverse_mass: &inverse_mass,
             duration: 0.001,
@@ -437,9 +442,9 @@ mod tests {
         };
         let mut velocities = [position.clone(), position];
         let [by_best, by_other] = &mut velocities;
-        wide.kick(&kick, by_best);
+        wide.update_velocities(&update, by_best);
         for rows in threads::rows(&nodes, [by_other]) {
-            simd.vectorize(|| other.kick_by(simd, &kick, rows));
+            simd.vectorize(|| other.update_velocities_by(simd, &update, rows));
         }
         let [by_best, by_other] = velocities.map(|rows| {
             let bits = rows.iter().flat_map(|row| row.to_array().map(f32::to_bits));
@@ -458,55 +463,55 @@ mod tests {
         let hierarchy = CellHierarchy::new(&grid, &connectivity, Grading::Graded);
         let mesh = Mesh::grade(&grid, &connectivity, &hierarchy).unwrap();
         let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
-        let mut blocks =
+        let mut batches =
             ElementBatches::<D>::new(Law::CorotationalVem, &[elasticity], grid.voxel_size());
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
-        blocks.update(&mesh, &grid, &[], &all, |_| false);
+        batches.update(&mesh, &grid, &[], &all, |_| false);
         let mut position = vec![Row::ZERO; mesh.node_capacity()];
-        let mut evaluate = |blocks: &mut ElementBatches<D>, bend: f32| {
+        let mut evaluate = |batches: &mut ElementBatches<D>, bend: f32| {
             for (id, node) in mesh.nodes() {
                 let [x, y, z] = node.at.map(|k| k as f32 / 16.0);
                 let bent = [x - bend * y * y, bend * x + y, z + bend * x * y, 0.0];
                 position[id.index()][..D::N].copy_from_slice(&bent[..D::N]);
             }
-            blocks.evaluate(&position);
+            batches.evaluate(&position);
         };
-        evaluate(&mut blocks, 0.1);
+        evaluate(&mut batches, 0.1);
         let sleeps = |id: &ElementId| id.0 % 4 < 3;
-        let state = |blocks: &ElementBatches<D>, id: ElementId| {
+        let state = |batches: &ElementBatches<D>, id: ElementId| {
             let nodes = mesh.element(id).unwrap().nodes.iter();
-            let forces = nodes.map(|&node| blocks.force_index(id, node) as usize);
-            let forces = forces.flat_map(|place| &blocks.forces[place..][..D::N]);
-            (blocks.rotation(id), forces.copied().collect::<Vec<f32>>())
+            let forces = nodes.map(|&node| batches.force_index(id, node) as usize);
+            let forces = forces.flat_map(|place| &batches.forces[place..][..D::N]);
+            (batches.rotation(id), forces.copied().collect::<Vec<f32>>())
         };
-        let states = |blocks: &ElementBatches<D>| -> Vec<_> {
-            all.iter().map(|&id| state(blocks, id)).collect()
+        let states = |batches: &ElementBatches<D>| -> Vec<_> {
+            all.iter().map(|&id| state(batches, id)).collect()
         };
-        let evaluated = |blocks: &ElementBatches<D>| {
-            let awake = blocks.blocks.iter().filter(|block| !block.is_idle());
+        let evaluated = |batches: &ElementBatches<D>| {
+            let awake = batches.batches.iter().filter(|batch| !batch.is_idle());
             awake.count()
         };
-        let (when_awake, before) = (evaluated(&blocks), states(&blocks));
+        let (when_awake, before) = (evaluated(&batches), states(&batches));
         // Puts elements to sleep one at a time, as when many single-voxel pieces fall asleep independently.
         let sleepers: Vec<ElementId> = all.iter().copied().filter(sleeps).collect();
         for &id in &sleepers {
-            blocks.set_asleep(&mesh, &[id], true);
+            batches.set_asleep(&mesh, &[id], true);
         }
         assert!(
-            2 * evaluated(&blocks) < when_awake,
+            2 * evaluated(&batches) < when_awake,
             "a quarter of the elements is awake, so most batches must be idle"
         );
-        assert_eq!(states(&blocks), before);
-        evaluate(&mut blocks, 0.2);
-        let after = states(&blocks);
+        assert_eq!(states(&batches), before);
+        evaluate(&mut batches, 0.2);
+        let after = states(&batches);
         for (at, id) in all.iter().enumerate() {
             assert_eq!(after[at] == before[at], sleeps(id), "{id}");
         }
-        blocks.set_asleep(&mesh, &sleepers, false);
-        assert_eq!(states(&blocks), after);
-        blocks.update(&mesh, &grid, &[], &all, |id| sleeps(&id));
+        batches.set_asleep(&mesh, &sleepers, false);
+        assert_eq!(states(&batches), after);
+        batches.update(&mesh, &grid, &[], &all, |id| sleeps(&id));
         for &id in &all {
-            assert!(state(&blocks, id).1.iter().all(|&force| force == 0.0));
+            assert!(state(&batches, id).1.iter().all(|&force| force == 0.0));
         }
     }
 

@@ -43,8 +43,8 @@ pub fn element_state<D: Dim>(
     element_state_plastic(law, elasticity, &IDENTITY, element_class, size, positions)
 }
 
-/// Returns the state of an element that is `size` [m] wide and has its nodes at `positions` [m]. `undone` is
-/// the plastic inverse G of [`crate::soft_body::plasticity`].
+/// Returns the state of an element that is `size` [m] wide and has its nodes at `positions` [m].
+/// `plastic_inverse` is the plastic inverse G of [`crate::soft_body::plasticity`].
 ///
 /// # Panics
 /// If the number of positions is not the number of nodes of the element class.
@@ -52,7 +52,7 @@ pub fn element_state<D: Dim>(
 pub fn element_state_plastic<D: Dim>(
     law: Law,
     elasticity: Elasticity,
-    undone: &Matrix,
+    plastic_inverse: &Matrix,
     element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
@@ -63,7 +63,7 @@ pub fn element_state_plastic<D: Dim>(
         "the number of positions must match the nodes of the element class"
     );
     let (whole, centre) = deformation_of(element_class, size, positions);
-    let deformation = elastic_part(&whole, undone);
+    let deformation = elastic_part(&whole, plastic_inverse);
     let rotation = rotation_of(&deformation);
     let column = |m: &Matrix, k: usize| DVec3::new(m[0][k], m[1][k], m[2][k]);
     let mut stretch = [DVec3::ZERO; 3];
@@ -89,7 +89,7 @@ pub fn element_state_plastic<D: Dim>(
         };
     }
     let squash = deformation[0].dot(cofactor(&deformation)[0]);
-    let nominal = stress_after::<D>(elasticity, &whole, undone);
+    let nominal = stress_after::<D>(elasticity, &whole, plastic_inverse);
     let mut cauchy = [DVec3::ZERO; 3];
     for i in 0..3 {
         for j in 0..3 {
@@ -107,7 +107,7 @@ pub fn element_state_plastic<D: Dim>(
         hourglass(elasticity, element_class, size, positions, &whole, centre);
     let weights = element_class.volumes.iter().zip(&hourglass);
     let swings = weights.map(|(&weight, &h)| h.dot(h) / weight);
-    let density = plastic_stiffness_factor::<D>(undone) * density;
+    let density = plastic_stiffness_factor::<D>(plastic_inverse) * density;
     let energy = density * volume_of(element_class, half) + 0.5 * stiffness * swings.sum::<f64>();
     ElementState {
         deformation: whole,
@@ -149,12 +149,12 @@ impl<D: Dim> SoftBody<D> {
         elasticity.young *= self.topology.stiffness_scale;
         let size = f64::from(self.topology.grid.voxel_size()) * f64::from(element.cell.width());
         let element_class = self.topology.mesh.element_class(element);
-        let law = self.state.blocks.law();
-        let undone = self.undone(id);
+        let law = self.state.batches.law();
+        let plastic_inverse = self.plastic_inverse(id);
         Some(element_state_plastic(
             law,
             elasticity,
-            &undone,
+            &plastic_inverse,
             element_class,
             size,
             &positions,
@@ -162,9 +162,11 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Plastic inverse G of an element, by rows; the identity if the material is elastic.
-    fn undone(&self, id: ElementId) -> Matrix {
-        let undone = self.state.blocks.plastic_inverse(id);
-        undone.map_or(IDENTITY, |undone| undone.map(|row| row.as_dvec3()))
+    fn plastic_inverse(&self, id: ElementId) -> Matrix {
+        let plastic_inverse = self.state.batches.plastic_inverse(id);
+        plastic_inverse.map_or(IDENTITY, |plastic_inverse| {
+            plastic_inverse.map(|row| row.as_dvec3())
+        })
     }
 
     /// Returns the plastic strain of an element, or `None` if the element was removed. The plastic strain is
@@ -173,7 +175,7 @@ impl<D: Dim> SoftBody<D> {
     /// stretched to 1.5 times its length.
     pub fn plastic_strain(&self, id: ElementId) -> Option<f32> {
         self.topology.mesh.element(id)?;
-        let most = 1.0 / plastic_stiffness_factor::<D>(&self.undone(id));
+        let most = 1.0 / plastic_stiffness_factor::<D>(&self.plastic_inverse(id));
         Some((most.sqrt() - 1.0).max(0.0) as f32)
     }
 

@@ -15,36 +15,38 @@ impl<D: Dim> SoftBody<D> {
     /// Symplectic Euler, stable if `duration` is at most [`SoftBody::longest_substep`].
     #[inline(never)]
     pub fn advance(&mut self, duration: f32, gravity: D::Vector) {
-        self.push(duration, gravity.to_vec3());
-        self.drift(duration, 0.0);
+        self.apply_forces(duration, gravity.to_vec3());
+        self.move_nodes(duration, 0.0);
     }
 
     /// Adds to velocities the change that elastic forces and gravity [m/s²] cause in `duration` [s].
-    pub(crate) fn push(&mut self, duration: f32, gravity: Vec3) {
+    pub(crate) fn apply_forces(&mut self, duration: f32, gravity: Vec3) {
         self.refresh_awake();
         if std::mem::take(&mut self.state.placed) {
             let all: Vec<ElementId> = self.topology.mesh.elements().map(|(id, _)| id).collect();
-            self.settle(&all);
+            self.reset_rotations(&all);
         }
-        self.state.blocks.evaluate(&self.state.ahead);
+        self.state.batches.evaluate(&self.state.ahead);
         let gravity = Row::from(gravity) * self.state.gravity_scale;
-        let kick = VelocityUpdate {
+        let update = VelocityUpdate {
             nodes: &self.cache.awake,
             inverse_mass: &self.state.inverse_mass,
             duration,
             gravity,
         };
-        self.state.blocks.kick(&kick, &mut self.state.velocity);
+        self.state
+            .batches
+            .update_velocities(&update, &mut self.state.velocity);
     }
 
     /// Adds to velocities the change that an acceleration field [m/s²] causes in `duration` [s].
-    pub(crate) fn pull(&mut self, duration: f32, field: &dyn Fn(D::Vector) -> D::Vector) {
+    pub(crate) fn apply_field(&mut self, duration: f32, field: &dyn Fn(D::Vector) -> D::Vector) {
         for &id in &self.cache.awake {
             let point = D::Vector::from_vec3(self.state.position[id].xyz());
-            let pull = Row::from(field(point).to_vec3());
-            if self.state.inverse_mass[id] > 0.0 && pull.is_finite() {
+            let acceleration = Row::from(field(point).to_vec3());
+            if self.state.inverse_mass[id] > 0.0 && acceleration.is_finite() {
                 for axis in 0..D::N {
-                    self.state.velocity[id][axis] += pull[axis] * duration;
+                    self.state.velocity[id][axis] += acceleration[axis] * duration;
                 }
             }
         }
@@ -54,7 +56,7 @@ impl<D: Dim> SoftBody<D> {
     /// may be far from the orientation of the nodes. The iteration in the force evaluation follows only small
     /// turns, and does not correct a rotation that is wrong by half a turn. Has no effect in 2D, where the
     /// force evaluation computes the rotation directly.
-    pub(crate) fn settle(&mut self, elements: &[ElementId]) {
+    pub(crate) fn reset_rotations(&mut self, elements: &[ElementId]) {
         if D::N == 2 {
             return;
         }
@@ -63,15 +65,15 @@ impl<D: Dim> SoftBody<D> {
                 .topology
                 .mesh
                 .element(id)
-                .expect("`settle` is called with live elements");
+                .expect("only rotations of live elements are reset");
             let wide = |rows: [Vec3; 3]| rows.map(|row| row.as_dvec3());
             let (rotation, deformation) = (
-                self.state.blocks.rotation(id),
+                self.state.batches.rotation(id),
                 self.elastic_part(id, element),
             );
             if let Some(turned) = rotation_if_far_from(&wide(rotation), &wide(deformation)) {
                 self.state
-                    .blocks
+                    .batches
                     .set_rotation(id, turned.map(|part| part as f32));
             }
         }
@@ -83,7 +85,7 @@ impl<D: Dim> SoftBody<D> {
     ///
     /// No node moves by more than a voxel per substep. Faster nodes would invert elements, and the forces
     /// would grow from substep to substep. Returns the distance that the fastest node has moved [m].
-    pub(crate) fn drift(&mut self, duration: f32, lead: f32) -> f32 {
+    pub(crate) fn move_nodes(&mut self, duration: f32, lead: f32) -> f32 {
         let top_speed = self.topology.grid.voxel_size() / duration;
         // Gives pieces that were created since the last damping round a rigid motion of zero.
         self.cache

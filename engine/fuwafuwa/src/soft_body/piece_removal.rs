@@ -17,7 +17,7 @@ impl<D: Dim> SoftBody<D> {
 
     /// Removes pieces, given in ascending order. At least one of them must not have been removed before.
     /// Returns all changes of the body.
-    pub(crate) fn take_out(&mut self, pieces: &[PieceId]) -> Changes {
+    pub(crate) fn remove_pieces(&mut self, pieces: &[PieceId]) -> Changes {
         let topology = &mut self.topology;
         let of_element = |id: &ElementId| topology.pieces.of_element(*id);
         let elements = topology.mesh.elements().map(|(id, _)| id);
@@ -28,18 +28,20 @@ impl<D: Dim> SoftBody<D> {
         let voxels = own.flat_map(|element| topology.mesh.voxels(element));
         let voxels: Vec<Point> = voxels.collect();
         topology.grid.remove_voxels(&voxels);
-        topology.connectivity.take_out(&voxels);
+        topology.connectivity.remove_voxels(&voxels);
         topology
             .hierarchy
-            .take_out(&topology.grid, &topology.connectivity, &voxels);
-        let nodes = topology.mesh.take_out(&topology.connectivity, &elements);
+            .remove_voxels(&topology.grid, &topology.connectivity, &voxels);
+        let nodes = topology
+            .mesh
+            .remove_elements(&topology.connectivity, &elements);
         for &piece in pieces {
             let piece = &mut topology.pieces.list[piece];
             // A removed piece is also marked as asleep, so that no code treats it as moving.
             (piece.removed, piece.asleep) = (true, true);
         }
-        let blocks = &mut self.state.blocks;
-        blocks.update(&topology.mesh, &topology.grid, &elements, &[], |_| false);
+        let batches = &mut self.state.batches;
+        batches.update(&topology.mesh, &topology.grid, &elements, &[], |_| false);
         self.find_breakable(&nodes);
         self.cache.awake_is_stale = true;
         self.refresh_awake();

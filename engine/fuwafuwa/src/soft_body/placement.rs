@@ -134,7 +134,7 @@ impl<D: Dim> SoftBody<D> {
             position,
             velocity,
             ahead,
-            blocks,
+            batches,
             ..
         } = &mut self.state;
         for row in position.iter_mut().chain(ahead.iter_mut()) {
@@ -143,7 +143,7 @@ impl<D: Dim> SoftBody<D> {
         for row in velocity.iter_mut() {
             *row = Row::from(rotation.apply(row.xyz()));
         }
-        blocks.rotate(rotation);
+        batches.rotate(rotation);
     }
 
     /// Returns the velocity of the centre of mass [m/s], and the angular velocity [rad/s] that a rigid body

@@ -64,29 +64,29 @@ impl Plasticity {
     }
 }
 
-/// Returns the elastic part F G of a deformation gradient F with the plastic inverse G = `undone`.
-pub fn elastic_part(deformation: &Matrix, undone: &Matrix) -> Matrix {
-    product(deformation, undone)
+/// Returns the elastic part F G of a deformation gradient F with the plastic inverse G = `plastic_inverse`.
+pub fn elastic_part(deformation: &Matrix, plastic_inverse: &Matrix) -> Matrix {
+    product(deformation, plastic_inverse)
 }
 
-/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation gradient with the plastic inverse `undone`.
+/// Returns the first Piola–Kirchhoff stress [Pa] of a deformation gradient with a plastic inverse.
 pub fn stress_after<D: Dim>(
     elasticity: Elasticity,
     deformation: &Matrix,
-    undone: &Matrix,
+    plastic_inverse: &Matrix,
 ) -> Matrix {
-    let own = stress(elasticity, &elastic_part(deformation, undone));
-    let soft = plastic_stiffness_factor::<D>(undone);
+    let own = stress(elasticity, &elastic_part(deformation, plastic_inverse));
+    let soft = plastic_stiffness_factor::<D>(plastic_inverse);
     let mut total = [DVec3::ZERO; 3];
     for i in 0..3 {
         for j in 0..3 {
-            total[i][j] = soft * own[i].dot(undone[j]);
+            total[i][j] = soft * own[i].dot(plastic_inverse[j]);
         }
     }
     total
 }
 
-/// Returns the elastic force [N] that an element with the plastic inverse `undone` exerts on each of its
+/// Returns the elastic force [N] that an element with a plastic inverse exerts on each of its
 /// nodes. The element is `size` [m] wide; `positions` are those of its nodes [m].
 ///
 /// # Panics
@@ -94,7 +94,7 @@ pub fn stress_after<D: Dim>(
 #[inline(never)]
 pub fn forces_after<D: Dim>(
     elasticity: Elasticity,
-    undone: &Matrix,
+    plastic_inverse: &Matrix,
     element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
@@ -105,21 +105,21 @@ pub fn forces_after<D: Dim>(
         "the number of positions must match the nodes of the element class"
     );
     let (deformation, _) = deformation_of(element_class, size, positions);
-    let stress = stress_after::<D>(elasticity, &deformation, undone);
+    let stress = stress_after::<D>(elasticity, &deformation, plastic_inverse);
     forces_of_stress(elasticity, &stress, element_class, size, positions)
 }
 
-/// Returns the plastic inverse after plastic flow; `undone` is the plastic inverse before. The two differ
+/// Returns the plastic inverse after plastic flow. It differs from the `plastic_inverse` before the flow
 /// only if the elastic strain exceeds the yield strain.
 pub fn flow<D: Dim>(
     plasticity: Plasticity,
     elasticity: Elasticity,
     deformation: &Matrix,
-    undone: &Matrix,
+    plastic_inverse: &Matrix,
 ) -> Matrix {
-    let elastic = elastic_part(deformation, undone);
+    let elastic = elastic_part(deformation, plastic_inverse);
     if determinant(&elastic) <= MIN_FLOW_VOLUME_RATIO {
-        return *undone;
+        return *plastic_inverse;
     }
     let rotation = rotation_of(&elastic);
     let column = |m: &Matrix, k: usize| DVec3::new(m[0][k], m[1][k], m[2][k]);
@@ -139,7 +139,7 @@ pub fn flow<D: Dim>(
     let size = squared(&deviator).sqrt();
     let excess = size - plasticity.max_deviator::<D>();
     if excess <= 0.0 {
-        return *undone;
+        return *plastic_inverse;
     }
     let share = excess.min(MAX_FLOW) / size;
     let mut step = [DVec3::ZERO; 3];
@@ -148,7 +148,7 @@ pub fn flow<D: Dim>(
             step[i][j] = f64::from(u8::from(i == j)) - share * deviator[i][j];
         }
     }
-    let next = product(undone, &step);
+    let next = product(plastic_inverse, &step);
     let volume = determinant(&next);
     // Rescales the plastic inverse to determinant 1; in 2D by two axes only, because the third axis is not
     // deformed.
@@ -178,14 +178,15 @@ pub fn flow<D: Dim>(
             }
         }))
     });
-    let before = plastic_stiffness_factor::<D>(undone) * density(elasticity, &stretch, whole);
+    let before =
+        plastic_stiffness_factor::<D>(plastic_inverse) * density(elasticity, &stretch, whole);
     let after = plastic_stiffness_factor::<D>(&next) * density(elasticity, &eased, whole);
     if after >= before {
-        return *undone;
+        return *plastic_inverse;
     }
-    let may_be =
-        inner(&next) < plasticity.max_plastic_norm_squared::<D>() || inner(&next) < inner(undone);
-    if may_be { next } else { *undone }
+    let may_be = inner(&next) < plasticity.max_plastic_norm_squared::<D>()
+        || inner(&next) < inner(plastic_inverse);
+    if may_be { next } else { *plastic_inverse }
 }
 
 /// Elastic energy density [J/m³] of an element with the symmetric stretch matrix `stretch` and the volume
@@ -202,12 +203,14 @@ fn density(elasticity: Elasticity, stretch: &Matrix, volume: f64) -> f64 {
 
 /// Stiffness factor 1 / λ_max(GᵀG) of an element with plastic inverse G. The largest eigenvalue λ_max is
 /// estimated from the trace and the norm of GᵀG; exact in 2D and for elements flattened along one axis.
-pub fn plastic_stiffness_factor<D: Dim>(undone: &Matrix) -> f64 {
+pub fn plastic_stiffness_factor<D: Dim>(plastic_inverse: &Matrix) -> f64 {
     let axes = D::N as f64;
     let mut squares = [DVec3::ZERO; 3];
     for i in 0..D::N {
         for j in 0..D::N {
-            squares[i][j] = (0..D::N).map(|k| undone[k][i] * undone[k][j]).sum();
+            squares[i][j] = (0..D::N)
+                .map(|k| plastic_inverse[k][i] * plastic_inverse[k][j])
+                .sum();
         }
     }
     let trace = (0..D::N).map(|k| squares[k][k]).sum::<f64>();
@@ -257,15 +260,15 @@ mod tests {
             f
         };
         assert_eq!(flow::<D>(CLAY, soft(), &drawn(1.04), &IDENTITY), IDENTITY);
-        let mut undone = IDENTITY;
+        let mut plastic_inverse = IDENTITY;
         for _ in 0..40 {
-            undone = flow::<D>(CLAY, soft(), &drawn(1.3), &undone);
-            assert!((determinant(&undone) - 1.0).abs() < 1e-12);
+            plastic_inverse = flow::<D>(CLAY, soft(), &drawn(1.3), &plastic_inverse);
+            assert!((determinant(&plastic_inverse) - 1.0).abs() < 1e-12);
         }
         // After the flow, the elastic strain that remains is the yield strain; the excess has become plastic.
-        let left = elastic_part(&drawn(1.3), &undone)[0][0];
+        let left = elastic_part(&drawn(1.3), &plastic_inverse)[0][0];
         assert!((left - 1.05).abs() < 2e-3, "{left}");
-        assert!(plastic_stiffness_factor::<D>(&undone) <= 1.0);
+        assert!(plastic_stiffness_factor::<D>(&plastic_inverse) <= 1.0);
         // An element is compressed to 0.3 of its width, but flows only to half its width, the plastic limit.
         // Stretching back then restores the original shape up to the yield strain.
         let mut flat = IDENTITY;
@@ -295,12 +298,13 @@ mod tests {
     /// was not along the load.
     #[test]
     fn stress_after_flow_preserves_angular_momentum() {
-        let mut undone = IDENTITY;
+        let mut plastic_inverse = IDENTITY;
         let sheared = [[1.0, 0.5, 0.0], [0.1, 1.0, 0.2], [0.0, 0.0, 1.0]].map(DVec3::from);
-        (0..20).for_each(|_| undone = flow::<Dim3>(CLAY, soft(), &sheared, &undone));
+        (0..20)
+            .for_each(|_| plastic_inverse = flow::<Dim3>(CLAY, soft(), &sheared, &plastic_inverse));
         let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
         let other = [[0.9, -0.2, 0.3], [0.1, 1.2, 0.0], [-0.2, 0.1, 1.1]].map(DVec3::from);
-        let stress = stress_after::<Dim3>(elasticity, &other, &undone);
+        let stress = stress_after::<Dim3>(elasticity, &other, &plastic_inverse);
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
             let spin = stress[i].dot(other[j]) - stress[j].dot(other[i]);
             assert!(spin.abs() < 1e-7 * elasticity.young, "{spin}");

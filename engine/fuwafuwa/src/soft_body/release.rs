@@ -62,7 +62,7 @@ impl<D: Dim> SoftBody<D> {
             .expect(
                 "the cell hierarchy follows the connectivity, so that the mesh can follow both",
             );
-        let touched = self.nodes_of(&remodelled.seated);
+        let touched = self.nodes_of(&remodelled.changed_elements);
         self.pass_on(&remodelled, &touched);
         self.expose(&beside::<D>(&changed));
         let places = self.places_around(&changed);
@@ -75,7 +75,7 @@ impl<D: Dim> SoftBody<D> {
         let changes = Changes {
             detached: self.topology.pieces.detach(&self.topology.mesh, &places),
             nodes: new.chain(remodelled.abandoned).collect(),
-            elements: [beside, remodelled.removed, remodelled.seated].concat(),
+            elements: [beside, remodelled.removed, remodelled.changed_elements].concat(),
             removed: Vec::new(),
         };
         let most = self.topology.mesh.element_capacity();
@@ -104,7 +104,7 @@ impl<D: Dim> SoftBody<D> {
     fn pass_on(&mut self, remodelled: &Remodelled, touched: &[NodeId]) {
         let Remodelled {
             removed,
-            seated,
+            changed_elements,
             inherited,
             abandoned,
             ..
@@ -124,33 +124,33 @@ impl<D: Dim> SoftBody<D> {
         let before: Vec<_> = self.pieces_in(&old).into_iter().map(momentum).collect();
 
         self.inherit(remodelled);
-        let new = seated
+        let new = changed_elements
             .iter()
             .copied()
-            .filter(|&id| !self.state.blocks.has(id));
+            .filter(|&id| !self.state.batches.has(id));
         let new: Vec<ElementId> = new.collect();
-        for &id in seated {
+        for &id in changed_elements {
             let element = self
                 .topology
                 .mesh
                 .element(id)
-                .expect("seated elements are alive");
+                .expect("changed elements are alive");
             self.topology.pieces.adopt(id, &element.nodes);
-            self.cache.bare[id] = 0;
+            self.cache.exposed_faces[id] = 0;
         }
-        let dents = self.dents_of(remodelled, &new);
-        let (blocks, pieces) = (&mut self.state.blocks, &self.topology.pieces);
+        let plastic_inverses = self.plastic_inverses_of(remodelled, &new);
+        let (batches, pieces) = (&mut self.state.batches, &self.topology.pieces);
         let asleep = |id: ElementId| pieces.list[pieces.of_element(id)].asleep;
         let (mesh, grid) = (&self.topology.mesh, &self.topology.grid);
-        blocks.update(mesh, grid, removed, seated, asleep);
-        for (id, dent) in dents {
-            blocks.set_plastic_inverse(id, dent);
+        batches.update(mesh, grid, removed, changed_elements, asleep);
+        for (id, plastic_inverse) in plastic_inverses {
+            batches.set_plastic_inverse(id, plastic_inverse);
         }
-        self.settle(&new);
-        let seated = seated
+        self.reset_rotations(&new);
+        let changed_elements = changed_elements
             .iter()
             .filter_map(|&id| self.topology.mesh.element(id));
-        let fresh = seated.filter(|element| element.cell.level == 0);
+        let fresh = changed_elements.filter(|element| element.cell.level == 0);
         let fresh: Vec<Point> = fresh.map(|element| element.cell.at).collect();
         self.expose(&fresh);
         self.weigh(touched);
@@ -167,9 +167,13 @@ impl<D: Dim> SoftBody<D> {
 
     /// Returns the plastic inverse of each new element, taken from the removed element that contained its
     /// first voxel.
-    fn dents_of(&self, remodelled: &Remodelled, new: &[ElementId]) -> Vec<(ElementId, [Vec3; 3])> {
-        let blocks = &self.state.blocks;
-        if !blocks.has_plastic() {
+    fn plastic_inverses_of(
+        &self,
+        remodelled: &Remodelled,
+        new: &[ElementId],
+    ) -> Vec<(ElementId, [Vec3; 3])> {
+        let batches = &self.state.batches;
+        if !batches.has_plastic() {
             return Vec::new();
         }
         let of = |&id: &ElementId| {
@@ -178,7 +182,7 @@ impl<D: Dim> SoftBody<D> {
                 .mesh
                 .first_voxel(self.topology.mesh.element(id)?);
             let origin = remodelled.origin::<D>(voxel)?;
-            Some((id, blocks.plastic_inverse(origin)?))
+            Some((id, batches.plastic_inverse(origin)?))
         };
         new.iter().filter_map(of).collect()
     }

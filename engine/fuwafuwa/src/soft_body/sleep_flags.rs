@@ -29,8 +29,8 @@ impl<D: Dim> SoftBody<D> {
                 };
             }
         }
-        let blocks = &mut self.state.blocks;
-        blocks.set_asleep(&self.topology.mesh, &elements, asleep);
+        let batches = &mut self.state.batches;
+        batches.set_asleep(&self.topology.mesh, &elements, asleep);
         let pieces = self.topology.pieces.list.iter_mut().zip(marked.iter());
         for (piece, _) in pieces.filter(|(_, marked)| **marked) {
             piece.asleep = asleep;
@@ -40,7 +40,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Records the positions of all nodes, at the start of a tick.
-    pub(crate) fn note_before(&mut self) {
+    pub(crate) fn store_start_positions(&mut self) {
         let (mesh, before) = (&self.topology.mesh, &mut self.cache.before);
         let both = |(id, &row): (NodeId, &Row)| match mesh.is_alive(id) {
             true => (mesh.node(id).at, row),

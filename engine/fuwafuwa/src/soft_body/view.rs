@@ -242,9 +242,9 @@ impl<D: Dim> SoftBody<D> {
             .mesh
             .elements()
             .flat_map(move |(id, element)| {
-                let bare = self.bare_faces(id);
+                let exposed_faces = self.bare_faces(id);
                 (0..2 * D::N)
-                    .filter(move |face| bare >> face & 1 == 1)
+                    .filter(move |face| exposed_faces >> face & 1 == 1)
                     .map(move |face| self.facet(id, element, face))
             })
     }
@@ -255,10 +255,10 @@ impl<D: Dim> SoftBody<D> {
     /// # Panics
     /// If the id was never used.
     pub fn bare_faces(&self, element: ElementId) -> u8 {
-        match self.cache.bare[element] {
+        match self.cache.exposed_faces[element] {
             0 => 0,
-            bare => match self.topology.mesh.element(element) {
-                Some(alive) if alive.cell.level == 0 => bare,
+            exposed_faces => match self.topology.mesh.element(element) {
+                Some(alive) if alive.cell.level == 0 => exposed_faces,
                 _ => 0,
             },
         }
@@ -346,7 +346,7 @@ impl<D: Dim> SoftBody<D> {
 
     fn strain_of(&self, id: ElementId, element: &Element) -> f32 {
         let deformation = self.elastic_part(id, element);
-        let rotation = self.state.blocks.rotation(id);
+        let rotation = self.state.batches.rotation(id);
         let mut sum = 0.0;
         for i in 0..D::N {
             for j in 0..D::N {

@@ -112,16 +112,16 @@ impl CellIndexing {
     /// Numbers the cells of a grid of `size` voxels, from level 0 up to the largest allowed cells.
     fn new(mut size: Point) -> Self {
         let longest = size[0].max(size[1]).max(size[2]);
-        let mut places = Self {
+        let mut cell_indexing = Self {
             levels: Vec::new(),
             count: 0,
         };
         loop {
-            let next = places.levels.len() + 1;
-            places.levels.push((size, places.count));
-            places.count += places.count_of(next - 1);
+            let next = cell_indexing.levels.len() + 1;
+            cell_indexing.levels.push((size, cell_indexing.count));
+            cell_indexing.count += cell_indexing.count_of(next - 1);
             if size == [1; 3] || next > SMALL_LEVEL && WIDEST << next > longest {
-                return places;
+                return cell_indexing;
             }
             size = size.map(|extent| (extent + 1) / 2);
         }
@@ -184,26 +184,26 @@ hash_state! { enum Grading { Graded, Uniform, Coarse } }
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct CellHierarchy<D: Dim> {
-    places: CellIndexing,
+    cell_indexing: CellIndexing,
     grading: Grading,
     exists: Vec<bool>,
     dim: PhantomData<D>,
 }
 
-hash_state! { [D: Dim] struct CellHierarchy<D> { places, grading, exists } skip { dim } }
+hash_state! { [D: Dim] struct CellHierarchy<D> { cell_indexing, grading, exists } skip { dim } }
 
 impl<D: Dim> CellHierarchy<D> {
     /// Builds the cell hierarchy of a body from scratch.
     #[inline(never)]
     pub fn new(grid: &VoxelGrid<D>, connectivity: &Connectivity<D>, grading: Grading) -> Self {
-        let places = CellIndexing::new(grid.size());
-        let mut exists = vec![false; places.count()];
+        let cell_indexing = CellIndexing::new(grid.size());
+        let mut exists = vec![false; cell_indexing.count()];
         // All cells of the topmost level exist, so that each voxel belongs to some cell.
-        if let [_, .., (_, first)] = places.levels[..] {
+        if let [_, .., (_, first)] = cell_indexing.levels[..] {
             exists[first..].fill(true);
         }
         let mut hierarchy = Self {
-            places,
+            cell_indexing,
             grading,
             exists,
             dim: PhantomData,
@@ -219,19 +219,19 @@ impl<D: Dim> CellHierarchy<D> {
 
     /// Returns the number of levels, including the topmost one.
     pub fn level_count(&self) -> usize {
-        self.places.levels.len()
+        self.cell_indexing.levels.len()
     }
 
     /// Returns the numbering of all possible cells.
-    pub fn places(&self) -> &CellIndexing {
-        &self.places
+    pub fn cell_indexing(&self) -> &CellIndexing {
+        &self.cell_indexing
     }
 
     /// Returns whether a cell exists. An existing cell has no elements of its own if all its solid children
     /// exist as cells, too.
     #[inline]
     pub fn exists(&self, cell: Cell) -> bool {
-        let number = self.places.index(cell);
+        let number = self.cell_indexing.index(cell);
         number.is_some_and(|number| self.exists[number])
     }
 
@@ -279,7 +279,7 @@ impl<D: Dim> CellHierarchy<D> {
 
     /// Returns all existing cells of a level, in memory order.
     pub fn cells(&self, level: u8) -> impl Iterator<Item = Cell> + '_ {
-        let (size, _) = self.places.levels[level as usize];
+        let (size, _) = self.cell_indexing.levels[level as usize];
         points_in([0; 3], size.map(|extent| extent - 1))
             .map(move |at| Cell { level, at })
             .filter(|&cell| self.exists(cell))
@@ -334,7 +334,7 @@ impl<D: Dim> CellHierarchy<D> {
     /// The result equals a hierarchy built from scratch. A cell of which some voxels remain is never removed:
     /// the remaining voxels touched the removed ones at open points, so they are cells of level 0, which
     /// require the coarser cell.
-    pub(crate) fn take_out(
+    pub(crate) fn remove_voxels(
         &mut self,
         grid: &VoxelGrid<D>,
         connectivity: &Connectivity<D>,
@@ -375,13 +375,13 @@ impl<D: Dim> CellHierarchy<D> {
 
     /// Removes a cell; returns false if the cell did not exist.
     fn remove(&mut self, cell: Cell) -> bool {
-        let number = self.places.index(cell);
+        let number = self.cell_indexing.index(cell);
         number.is_some_and(|number| std::mem::replace(&mut self.exists[number], false))
     }
 
     /// Adds a cell; returns false if the cell already existed or lies outside the grid.
     fn add(&mut self, cell: Cell) -> bool {
-        let number = self.places.index(cell);
+        let number = self.cell_indexing.index(cell);
         number.is_some_and(|number| !std::mem::replace(&mut self.exists[number], true))
     }
 }

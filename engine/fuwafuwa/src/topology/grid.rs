@@ -28,11 +28,11 @@ pub struct VoxelGrid<D: Dim> {
     voxel_size: f32,
     materials: Vec<u8>,
     /// For each voxel, whether it was removed with its piece. An empty list means that no voxel was removed.
-    taken_out: Vec<bool>,
+    removed: Vec<bool>,
     dim: PhantomData<D>,
 }
 
-hash_state! { [D: Dim] struct VoxelGrid<D> { size, voxel_size, materials, taken_out } skip { dim } }
+hash_state! { [D: Dim] struct VoxelGrid<D> { size, voxel_size, materials, removed } skip { dim } }
 
 impl<D: Dim> VoxelGrid<D> {
     /// Creates a grid of `size` voxels with edge length `voxel_size` [m]; `material` returns the material
@@ -105,13 +105,14 @@ impl<D: Dim> VoxelGrid<D> {
         })
     }
 
-    /// Returns the grid with all lengths multiplied by `factor` and with the same number of voxels.
+    /// Returns the grid with all lengths multiplied by `factor` and with the same voxels. Removed voxels stay
+    /// removed.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] if the new voxel size is outside [`VOXEL_SIZES`].
     pub fn scaled(mut self, factor: f32) -> Result<Self, Error> {
-        self.voxel_size *= factor;
-        Self::checked(self.size, self.voxel_size, self.materials)
+        self.voxel_size = checked_voxel_size(self.voxel_size * factor)?;
+        Ok(self)
     }
 
     /// Returns the centre of a voxel [m], measured from the low corner of a grid with this voxel size; the
@@ -161,22 +162,22 @@ impl<D: Dim> VoxelGrid<D> {
     /// [`VoxelGrid::is_solid`] stays true for removed voxels.
     #[inline]
     pub fn is_present(&self, voxel: Point) -> bool {
-        self.is_solid(voxel) && (self.taken_out.is_empty() || !self.taken_out[self.index(voxel)])
+        self.is_solid(voxel) && (self.removed.is_empty() || !self.removed[self.index(voxel)])
     }
 
     /// Returns the number of solid voxels without those that were removed.
     #[inline(never)]
-    pub fn left_count(&self) -> usize {
-        let gone = self.taken_out.iter().filter(|&&gone| gone).count();
+    pub fn remaining_count(&self) -> usize {
+        let gone = self.removed.iter().filter(|&&gone| gone).count();
         self.solid_count() - gone
     }
 
     /// Marks solid voxels as removed.
     pub(crate) fn remove_voxels(&mut self, voxels: &[Point]) {
-        self.taken_out.resize(self.materials.len(), false);
+        self.removed.resize(self.materials.len(), false);
         for &voxel in voxels {
             let index = self.index(voxel);
-            self.taken_out[index] = true;
+            self.removed[index] = true;
         }
     }
 
@@ -199,7 +200,7 @@ impl<D: Dim> VoxelGrid<D> {
         let size = self.size.map(|extent| usize::try_from(extent).unwrap_or(0));
         let is_box = Self::from_materials(size, self.voxel_size, self.materials.clone()).is_ok();
         let are_solid = |(&gone, &material): (&bool, &u8)| !gone || material != 0;
-        let gone = &self.taken_out;
+        let gone = &self.removed;
         let is_known = gone.is_empty() || gone.len() == self.materials.len();
         is_box && is_known && gone.iter().zip(&self.materials).all(are_solid)
     }
@@ -223,11 +224,7 @@ impl<D: Dim> VoxelGrid<D> {
 
     #[inline(never)]
     fn checked(size: Point, voxel_size: f32, materials: Vec<u8>) -> Result<Self, Error> {
-        if !VOXEL_SIZES.contains(&voxel_size) {
-            let (low, high) = (VOXEL_SIZES.start(), VOXEL_SIZES.end());
-            let expected = format!("{low} to {high} m");
-            return Err(Error::parameter("voxel_size", expected, voxel_size));
-        }
+        let voxel_size = checked_voxel_size(voxel_size)?;
         if materials.iter().all(|&m| m == 0) {
             return Err(Error::EmptyGrid);
         }
@@ -235,10 +232,20 @@ impl<D: Dim> VoxelGrid<D> {
             size,
             voxel_size,
             materials,
-            taken_out: Vec::new(),
+            removed: Vec::new(),
             dim: PhantomData,
         })
     }
+}
+
+/// Returns a voxel size [m], or an error if it is outside [`VOXEL_SIZES`].
+fn checked_voxel_size(voxel_size: f32) -> Result<f32, Error> {
+    if VOXEL_SIZES.contains(&voxel_size) {
+        return Ok(voxel_size);
+    }
+    let (low, high) = (VOXEL_SIZES.start(), VOXEL_SIZES.end());
+    let expected = format!("{low} to {high} m");
+    Err(Error::parameter("voxel_size", expected, voxel_size))
 }
 
 #[cfg(test)]

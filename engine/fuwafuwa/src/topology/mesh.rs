@@ -67,7 +67,7 @@ pub struct Mesh<D: Dim> {
     /// Whether every lattice point of the surface is a node even if the elements at the surface are large:
     /// true for [`Grading::Coarse`] only.
     dense_surface: bool,
-    places: CellIndexing,
+    cell_indexing: CellIndexing,
     /// Ids of the elements of each cell, by the index of the cell.
     by_cell: IdLists<ElementId>,
     /// Element that contains each voxel, as element id + 1, by the index of the voxel's level-0 cell; 0 = no
@@ -84,7 +84,7 @@ pub struct Mesh<D: Dim> {
 
 hash_state! {
     [D: Dim] struct Mesh<D> {
-        elements, nodes, element_classes, dense_surface, places, by_cell, owners, by_point, classes, carriers,
+        elements, nodes, element_classes, dense_surface, cell_indexing, by_cell, owners, by_point, classes, carriers,
         free_elements, free_nodes,
     }
 }
@@ -130,9 +130,9 @@ impl<D: Dim> Mesh<D> {
             nodes: IndexVec::default(),
             element_classes: Vec::new(),
             dense_surface: hierarchy.grading() == Grading::Coarse,
-            places: hierarchy.places().clone(),
-            by_cell: IdLists::new(hierarchy.places().count()),
-            owners: vec![0; hierarchy.places().count_of(0)],
+            cell_indexing: hierarchy.cell_indexing().clone(),
+            by_cell: IdLists::new(hierarchy.cell_indexing().count()),
+            owners: vec![0; hierarchy.cell_indexing().count_of(0)],
             by_point: IdLists::new(connectivity.point_count()),
             classes: BTreeMap::new(),
             carriers: IndexVec::default(),
@@ -142,12 +142,12 @@ impl<D: Dim> Mesh<D> {
         for level in 0..hierarchy.level_count() as u8 {
             for cell in hierarchy.cells(level) {
                 for children in parts::<D>(hierarchy.filled(grid, cell)) {
-                    mesh.place(cell, children);
+                    mesh.add_element(cell, children);
                 }
             }
         }
         for id in mesh.elements.ids() {
-            mesh.seat(id, connectivity, None)?;
+            mesh.assign_nodes(id, connectivity, None)?;
         }
         Ok(mesh)
     }
@@ -256,7 +256,7 @@ impl<D: Dim> Mesh<D> {
 
     /// Returns the id of the element that contains a solid voxel; `None` for an empty voxel.
     pub fn owner(&self, voxel: Point) -> Option<ElementId> {
-        owner(self.owners[self.places.index(Cell::of(voxel))?])
+        owner(self.owners[self.cell_indexing.index(Cell::of(voxel))?])
     }
 
     /// Returns the element that contains a solid voxel; `None` for an empty voxel.
@@ -272,7 +272,7 @@ impl<D: Dim> Mesh<D> {
         octants: u8,
     ) -> impl Iterator<Item = ElementId> + use<D> {
         let mut owners = [0; 8];
-        match self.places.voxels_around::<D>(at) {
+        match self.cell_indexing.voxels_around::<D>(at) {
             Some(places) => {
                 for octant in 0..D::CORNERS {
                     owners[octant] = self.owners[places[octant]];
@@ -281,7 +281,7 @@ impl<D: Dim> Mesh<D> {
             None => {
                 for octant in 0..D::CORNERS {
                     let voxel = Cell::of(voxel_around::<D>(at, octant));
-                    let place = self.places.index(voxel);
+                    let place = self.cell_indexing.index(voxel);
                     owners[octant] = place.map_or(0, |place| self.owners[place]);
                 }
             }
@@ -344,7 +344,7 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// Adds an element without nodes, and records in `owners` that the element contains its voxels.
-    fn place(&mut self, cell: Cell, children: u8) {
+    fn add_element(&mut self, cell: Cell, children: u8) {
         let element = Element {
             cell,
             children,
@@ -358,7 +358,11 @@ impl<D: Dim> Mesh<D> {
         } else {
             self.elements[id] = Some(element);
         }
-        let place = |cell| self.places.index(cell).expect("cells lie in the grid");
+        let place = |cell| {
+            self.cell_indexing
+                .index(cell)
+                .expect("cells lie in the grid")
+        };
         self.by_cell.append(place(cell), id);
         for voxel in self.voxels(self.alive(id)) {
             self.owners[place(Cell::of(voxel))] = id.0 + 1;

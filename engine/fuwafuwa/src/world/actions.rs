@@ -1,7 +1,7 @@
 //! Actions on bodies from outside: translation, rotation, velocity, impulse, sleep.
 
 use super::{BodyHandle, World, WorldConfig};
-use crate::contact::broad_phase::{bounds_of, leaning_on_body, leaning_on_rigid};
+use crate::contact::broad_phase::{bounds_of, supported_by_body, supported_by_rigid};
 use crate::contact::solver::Hit;
 use crate::error::{Error, require};
 use crate::event::Event;
@@ -103,7 +103,7 @@ impl<D: Dim> World<D> {
         position: Vec3,
         rotation: Rotation,
     ) -> Result<(), Error> {
-        self.change_rigid(rigid, |body| body.place::<D>(position, rotation))
+        self.change_rigid(rigid, |body| body.set_pose::<D>(position, rotation))
     }
 
     /// Returns the velocity of a body. For a soft body, this is the velocity of the rigid motion with the
@@ -258,7 +258,7 @@ impl<D: Dim> World<D> {
             BodyHandle::Rigid(rigid) => {
                 let rigid = self.dynamic_mut(rigid)?;
                 let lever = flat::<D>(point) - rigid.position();
-                rigid.kick(flat::<D>(impulse), lever);
+                rigid.apply_impulse(flat::<D>(impulse), lever);
             }
         }
         Ok(())
@@ -356,7 +356,7 @@ impl<D: Dim> World<D> {
         match body {
             BodyHandle::Soft(body) => {
                 self.displace(body, |body| body.set_layers(layers))?;
-                self.nearby.nodes.look_again();
+                self.nearby.nodes.request_full_search();
                 Ok(())
             }
             BodyHandle::Rigid(rigid) => self.change_rigid(rigid, |body| {
@@ -487,14 +487,14 @@ impl<D: Dim> World<D> {
     ) -> Result<(), Error> {
         let body = self.bodies.get(id)?;
         let own = id.slot();
-        let leaning = leaning_on_body(body, &self.bodies);
-        let leaning: Vec<Hit> = leaning.into_iter().filter(|hit| hit.0 != own).collect();
+        let supported = supported_by_body(body, &self.bodies);
+        let supported: Vec<Hit> = supported.into_iter().filter(|hit| hit.0 != own).collect();
         let mut places = bounds_of(body, |_| true);
         self.nearby.remove_body(own);
         change(self.bodies.get_mut(id)?);
         self.wake_soft(id)?;
         places.extend(bounds_of(self.bodies.get(id)?, |_| true));
-        self.wake_leaning(leaning, places);
+        self.wake_supported(supported, places);
         Ok(())
     }
 
@@ -508,16 +508,16 @@ impl<D: Dim> World<D> {
     ) -> Result<(), Error> {
         let body = self.rigids.get(rigid)?;
         let was = body.shape().bounds();
-        let leaning = leaning_on_rigid(body, &self.bodies);
+        let supported = supported_by_rigid(body, &self.bodies);
         let body = self.rigids.get_mut(rigid)?;
         change(body)?;
         body.wake();
         let is = body.shape().bounds();
-        self.wake(&leaning);
-        let leaning = leaning_on_rigid(self.rigids.get(rigid)?, &self.bodies);
+        self.wake(&supported);
+        let supported = supported_by_rigid(self.rigids.get(rigid)?, &self.bodies);
         self.nearby.remove_rigid(rigid.slot());
-        self.nearby.nodes.look_again();
-        self.wake_leaning(leaning, vec![was, is]);
+        self.nearby.nodes.request_full_search();
+        self.wake_supported(supported, vec![was, is]);
         Ok(())
     }
 

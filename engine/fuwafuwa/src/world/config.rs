@@ -76,13 +76,13 @@ impl<D: Dim> WorldConfig<D> {
     }
 
     /// Returns the maximum number of substeps per tick.
-    pub(super) fn most_in_tick(&self) -> u32 {
+    pub(super) fn max_in_tick(&self) -> u32 {
         self.in_tick(60.0 * f64::from(self.max_substeps))
     }
 
     /// Returns the shortest allowed substep [s]; bodies that require a shorter one are softened.
     pub(super) fn shortest_substep(&self) -> f64 {
-        f64::from(self.tick) / f64::from(self.most_in_tick())
+        f64::from(self.tick) / f64::from(self.max_in_tick())
     }
 
     pub(super) fn check(&self) -> Result<(), Error> {

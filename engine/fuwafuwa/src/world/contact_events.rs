@@ -141,12 +141,12 @@ impl<D: Dim> World<D> {
     }
 
     /// Reports the contact and sensor events of the tick.
-    pub(super) fn note_touches(&mut self) {
+    pub(super) fn report_contacts(&mut self) {
         let contacts = self.contacts_in_tick();
         self.events
             .extend(contacts.iter().copied().map(Event::ContactForce));
-        self.note_changes(contacts);
-        self.note_sensors();
+        self.report_contact_changes(contacts);
+        self.report_sensors();
     }
 
     /// Returns the contacts of the tick, ascending by pair.
@@ -180,10 +180,10 @@ impl<D: Dim> World<D> {
                 [point, apart * (1.0 / apart.length().max(1e-9))]
             });
         }
-        for touch in &self.nearby.rigids.passed {
-            let objects = { touch.both }.map(|slot| ObjectRef::RigidBody(self.rigids.id(slot)));
-            sums.add(objects, touch.impulse, touch.speed, || {
-                [touch.at, touch.normal]
+        for point in &self.nearby.rigids.pressed {
+            let objects = { point.both }.map(|slot| ObjectRef::RigidBody(self.rigids.id(slot)));
+            sums.add(objects, point.impulse, point.speed, || {
+                [point.at, point.normal]
             });
         }
         sums.contacts()
@@ -192,7 +192,7 @@ impl<D: Dim> World<D> {
     /// Compares the contacts of this tick, in ascending order, with those of the previous tick, and reports
     /// which contacts started or ended. A pair without contact impulses still touches as long as both objects
     /// are at rest.
-    fn note_changes(&mut self, contacts: Vec<Contact<D>>) {
+    fn report_contact_changes(&mut self, contacts: Vec<Contact<D>>) {
         let mut before = std::mem::take(&mut self.touching).into_iter().peekable();
         let mut touching = Vec::with_capacity(contacts.len());
         let (mut started, mut ended) = (Vec::new(), Vec::new());
@@ -248,7 +248,7 @@ impl<D: Dim> World<D> {
 
     /// Compares the objects inside each sensor with those in the previous tick, and reports entries and
     /// exits.
-    fn note_sensors(&mut self) {
+    fn report_sensors(&mut self) {
         let sensors = self.rigids.entries().filter(|(_, rigid)| rigid.is_sensor);
         let sensors: Vec<(RigidBodyHandle, &RigidState)> = sensors.collect();
         let mut inside: BTreeSet<(RigidBodyHandle, ObjectRef)> = BTreeSet::new();

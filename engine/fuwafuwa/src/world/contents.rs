@@ -1,7 +1,7 @@
 //! Contents of a world: insertion, removal, access and wake-up.
 
 use super::{World, WorldConfig};
-use crate::contact::broad_phase::{bounds_of, leaning_on_body, leaning_on_rigid, sleeping_in};
+use crate::contact::broad_phase::{bounds_of, sleeping_in, supported_by_body, supported_by_rigid};
 use crate::contact::solver::Hit;
 use crate::error::Error;
 use crate::event::Event;
@@ -81,7 +81,7 @@ impl<D: Dim> World<D> {
         self.wake_body(body);
         let CutReport {
             split_nodes,
-            detached: parted,
+            detached,
         } = self.bodies.get_mut(body)?.cut(blade);
         let energy = 0.0;
         let positions = split_nodes.iter();
@@ -91,7 +91,7 @@ impl<D: Dim> World<D> {
             energy,
         });
         self.events.extend(releases);
-        self.events.extend(Event::parted(body, &parted));
+        self.events.extend(Event::pieces_detached(body, &detached));
         Ok(split_nodes.len())
     }
 
@@ -117,8 +117,8 @@ impl<D: Dim> World<D> {
     pub(crate) fn remove_soft_body(&mut self, body: SoftBodyHandle) -> Result<SoftBody<D>, Error> {
         let removed = self.bodies.remove(body)?;
         self.nearby.remove_body(body.slot());
-        let leaning = leaning_on_body(&removed, &self.bodies);
-        self.wake_leaning(leaning, bounds_of(&removed, |_| true));
+        let supported = supported_by_body(&removed, &self.bodies);
+        self.wake_supported(supported, bounds_of(&removed, |_| true));
         Ok(removed)
     }
 
@@ -130,8 +130,8 @@ impl<D: Dim> World<D> {
     ) -> Result<RigidBody<D>, Error> {
         let removed = self.rigids.remove(rigid)?;
         self.nearby.remove_rigid(rigid.slot());
-        let leaning = leaning_on_rigid(&removed, &self.bodies);
-        self.wake_leaning(leaning, vec![removed.shape().bounds()]);
+        let supported = supported_by_rigid(&removed, &self.bodies);
+        self.wake_supported(supported, vec![removed.shape().bounds()]);
         Ok(removed.definition())
     }
 
@@ -203,12 +203,12 @@ impl<D: Dim> World<D> {
         hash.number()
     }
 
-    /// Wakes the pieces in `leaning`, given in ascending order, and the dynamic rigid bodies with bounding
+    /// Wakes the pieces in `supported`, given in ascending order, and the dynamic rigid bodies with bounding
     /// boxes that overlap one of the boxes in `was`. Repeats this for objects in contact with the woken ones,
     /// until no further rigid body wakes. The AABB test is conservative, so it may wake rigid bodies that
     /// were only close.
-    pub(super) fn wake_leaning(&mut self, leaning: Vec<Hit>, was: Vec<Bounds>) {
-        let (mut pieces, mut places) = (leaning, was);
+    pub(super) fn wake_supported(&mut self, supported: Vec<Hit>, was: Vec<Bounds>) {
+        let (mut pieces, mut places) = (supported, was);
         loop {
             for (slot, body) in self.bodies.by_slot() {
                 let is_one = |piece| pieces.binary_search(&(slot, piece)).is_ok();
@@ -224,8 +224,8 @@ impl<D: Dim> World<D> {
             self.wake_rigids(&woken);
             let woken = woken.iter().map(|&slot| self.rigids.at(slot));
             places = woken.clone().map(|rigid| rigid.shape().bounds()).collect();
-            let leaning = woken.map(|rigid| leaning_on_rigid(rigid, &self.bodies));
-            pieces = leaning.flatten().collect();
+            let supported = woken.map(|rigid| supported_by_rigid(rigid, &self.bodies));
+            pieces = supported.flatten().collect();
             pieces.sort_unstable();
         }
     }
@@ -237,8 +237,8 @@ impl<D: Dim> World<D> {
         self.wake_rigids(&sleepers);
         // Soft pieces that rest on the woken rigid bodies wake, too, because they may lose their support.
         for slot in sleepers {
-            let leaning = leaning_on_rigid(self.rigids.at(slot), &self.bodies);
-            self.wake(&leaning);
+            let supported = supported_by_rigid(self.rigids.at(slot), &self.bodies);
+            self.wake(&supported);
         }
     }
 

@@ -50,7 +50,7 @@ impl<D: Dim> World<D> {
             let Ok(holder) = self.rigids.get(knife.holder) else {
                 continue;
             };
-            for cut in knife.pass(&self.bodies, holder, round) {
+            for cut in knife.end_sweep(&self.bodies, holder, round) {
                 let body = self
                     .bodies
                     .get_mut(cut.body)
@@ -70,7 +70,7 @@ impl<D: Dim> World<D> {
                     work,
                 });
                 self.events
-                    .extend(Event::parted(cut.body, &changes.detached));
+                    .extend(Event::pieces_detached(cut.body, &changes.detached));
                 self.nearby.tear(cut.body.slot(), body, &changes);
             }
         }
@@ -79,7 +79,7 @@ impl<D: Dim> World<D> {
     /// Solves the contacts between cutting edges and soft bodies. Returns the sleeping pieces that the edges
     /// hit; the caller must wake them.
     #[inline(never)]
-    pub(super) fn hold_edges(&mut self, duration: f32) -> Vec<Hit> {
+    pub(super) fn solve_knife_contacts(&mut self, duration: f32) -> Vec<Hit> {
         let mut woken = Vec::new();
         let round = self.config.round();
         for knife in self.knives.iter_mut() {

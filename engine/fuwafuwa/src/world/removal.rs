@@ -1,7 +1,7 @@
 //! Removal of pieces, and of everything that left a region.
 
 use super::World;
-use crate::contact::broad_phase::{bounds_of, leaning_on_pieces};
+use crate::contact::broad_phase::{bounds_of, supported_by_pieces};
 use crate::contact::solver::Hit;
 use crate::error::Error;
 use crate::event::Event;
@@ -61,7 +61,7 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub fn remove_piece(&mut self, body: SoftBodyHandle, piece: PieceId) -> Result<Removed, Error> {
         match self.bodies.get(body)?.has_piece(piece) {
-            true => Ok(self.take_out(&[(body, piece)])),
+            true => Ok(self.remove_pieces(&[(body, piece)])),
             false => {
                 let expected = "the number of a piece that the body still has";
                 Err(Error::parameter("piece", expected, piece.0))
@@ -90,10 +90,10 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub fn remove_small_pieces(&mut self, size: PieceSize) -> Result<Removed, Error> {
         let (PieceSize::Volume(least) | PieceSize::Mass(least)) = size else {
-            return Ok(self.take_out_where(|body| is_below(body, size)));
+            return Ok(self.remove_pieces_where(|body| smaller_than(body, size)));
         };
         match least >= 0.0 && least.is_finite() {
-            true => Ok(self.take_out_where(|body| is_below(body, size))),
+            true => Ok(self.remove_pieces_where(|body| smaller_than(body, size))),
             false => {
                 let expected = "0 or more, and finite";
                 Err(Error::parameter("size", expected, least))
@@ -129,7 +129,7 @@ impl<D: Dim> World<D> {
     pub fn remove_outside(&mut self, region: &Shape<D>) -> Result<Removed, Error> {
         region.check().map_err(|error| error.of("region"))?;
         let region = region.solid();
-        let mut removed = self.take_out_where(|body| {
+        let mut removed = self.remove_pieces_where(|body| {
             let mut outside: Vec<bool> = vec![true; body.pieces().list.len()];
             for (id, _) in body.mesh().nodes() {
                 let at = body.positions()[id].xyz();
@@ -139,12 +139,12 @@ impl<D: Dim> World<D> {
             }
             outside
         });
-        let free = self
+        let dynamic = self
             .rigids
             .entries()
             .filter(|(_, rigid)| rigid.is_dynamic());
-        let left = free.filter(|(_, rigid)| rigid.shape().gap(&region).0 > 0.0);
-        removed.rigid_bodies = left.map(|(id, _)| id).collect();
+        let outside = dynamic.filter(|(_, rigid)| rigid.shape().gap(&region).0 > 0.0);
+        removed.rigid_bodies = outside.map(|(id, _)| id).collect();
         for &body in &removed.rigid_bodies {
             if self.remove_rigid_body(body).is_ok() {
                 self.events.push(Event::RigidBodyRemoved { body });
@@ -155,39 +155,39 @@ impl<D: Dim> World<D> {
 
     /// Removes the pieces that `marks` selects. For each body, `marks` returns a flag per piece number: true
     /// if the piece is to be removed.
-    fn take_out_where(&mut self, marks: impl Fn(&SoftBody<D>) -> Vec<bool>) -> Removed {
+    fn remove_pieces_where(&mut self, marks: impl Fn(&SoftBody<D>) -> Vec<bool>) -> Removed {
         let mut pieces = Vec::new();
         for (id, body) in self.bodies.entries() {
             let marked = body.pieces().list.ids().zip(marks(body));
             let marked = marked.filter(|&(piece, is_marked)| is_marked && body.has_piece(piece));
             pieces.extend(marked.map(|(piece, _)| (id, piece)));
         }
-        self.take_out(&pieces)
+        self.remove_pieces(&pieces)
     }
 
     /// Removes pieces, given in ascending order, and wakes the sleeping objects in contact with them. All
     /// pieces must exist.
-    fn take_out(&mut self, pieces: &[(SoftBodyHandle, PieceId)]) -> Removed {
+    fn remove_pieces(&mut self, pieces: &[(SoftBodyHandle, PieceId)]) -> Removed {
         let mut removed = Removed::default();
         if pieces.is_empty() {
             return removed;
         }
         let hits = pieces.iter().map(|&(body, piece)| (body.slot(), piece));
-        let leaning = leaning_on_pieces(&hits.collect::<Vec<Hit>>(), &self.bodies);
+        let supported = supported_by_pieces(&hits.collect::<Vec<Hit>>(), &self.bodies);
         let mut was = Vec::new();
         for own in pieces.chunk_by(|a, b| a.0 == b.0) {
             let id = own[0].0;
             let is_one = |piece| own.binary_search(&(id, piece)).is_ok();
             was.extend(bounds_of(&self.bodies[id], is_one));
             let of_it = own.iter().map(|&(_, piece)| piece);
-            self.take_out_of(id, &of_it.collect::<Vec<PieceId>>(), &mut removed);
+            self.remove_pieces_of(id, &of_it.collect::<Vec<PieceId>>(), &mut removed);
         }
-        self.wake_leaning(leaning, was);
+        self.wake_supported(supported, was);
         removed
     }
 
     /// Removes pieces of a body, and the body itself if no piece remains. Adds them to `removed`.
-    fn take_out_of(&mut self, id: SoftBodyHandle, pieces: &[PieceId], removed: &mut Removed) {
+    fn remove_pieces_of(&mut self, id: SoftBodyHandle, pieces: &[PieceId], removed: &mut Removed) {
         let body = self.bodies.at_mut(id.slot());
         let whole = body.total_mass();
         let events = pieces
@@ -206,7 +206,7 @@ impl<D: Dim> World<D> {
             }
             return;
         }
-        let changes = body.take_out(pieces);
+        let changes = body.remove_pieces(pieces);
         removed.mass += whole - body.total_mass();
         let nearby = &mut self.nearby;
         nearby.remove_elements(id.slot(), body, &changes.elements);
@@ -214,7 +214,7 @@ impl<D: Dim> World<D> {
 }
 
 /// Returns a flag for each piece number: whether the piece is smaller than `size`.
-fn is_below<D: Dim>(body: &SoftBody<D>, size: PieceSize) -> Vec<bool> {
+fn smaller_than<D: Dim>(body: &SoftBody<D>, size: PieceSize) -> Vec<bool> {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let mut found = vec![0.0; pieces.list.len()];
     if let PieceSize::Mass(_) = size {

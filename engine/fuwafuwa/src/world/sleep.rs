@@ -23,12 +23,12 @@ const SLEEP_SPEED: f64 = 0.03;
 const SLEEP_TIME: f32 = 0.5;
 
 /// Updates the sleep timers of all pieces, and puts those that reach [`SLEEP_TIME`] to sleep. Pieces in
-/// `handled` stay awake, because they are embedded in another piece, or because a kinematic or coupled body
+/// `kept_awake` stay awake, because they are embedded in another piece, or because a kinematic or coupled body
 /// pushes or cuts them. Returns the pieces that fell asleep.
 pub fn fall_asleep<D: Dim>(
     bodies: &mut SoftBodies<D>,
     motions: &[IndexVec<PieceId, PieceMotion>],
-    handled: &[Hit],
+    kept_awake: &[Hit],
     duration: f32,
 ) -> Vec<Hit> {
     for (body, motions) in bodies.iter_mut().zip(motions) {
@@ -41,7 +41,7 @@ pub fn fall_asleep<D: Dim>(
             };
         }
     }
-    for &(body, piece) in handled {
+    for &(body, piece) in kept_awake {
         bodies.at_mut(body).pieces_mut().list[piece].sleep_timer = 0.0;
     }
     change(bodies, true, |_, _, piece| {
@@ -50,13 +50,17 @@ pub fn fall_asleep<D: Dim>(
 }
 
 /// Updates the sleep timers of dynamic rigid bodies, and puts those that reach [`SLEEP_TIME`] to sleep. Rigid
-/// bodies in `handled` stay awake, because a moving kinematic or coupled body presses on them.
-pub fn fall_asleep_rigid(rigids: &mut RigidBodies, handled: &BTreeSet<RigidSlot>, duration: f32) {
+/// bodies in `kept_awake` stay awake, because a moving kinematic or coupled body presses on them.
+pub fn fall_asleep_rigid(
+    rigids: &mut RigidBodies,
+    kept_awake: &BTreeSet<RigidSlot>,
+    duration: f32,
+) {
     for (slot, rigid) in rigids.by_slot_mut() {
         if !rigid.is_dynamic() || rigid.asleep {
             continue;
         }
-        let slow = f64::from(rigid.top_speed()) < SLEEP_SPEED && !handled.contains(&slot);
+        let slow = f64::from(rigid.top_speed()) < SLEEP_SPEED && !kept_awake.contains(&slot);
         rigid.sleep_timer = if slow {
             rigid.sleep_timer + duration
         } else {

@@ -17,7 +17,7 @@ impl<D: Dim> World<D> {
     pub fn add_joint(&mut self, joint: Joint<D>) -> Result<JointHandle, Error> {
         let mut joint = JointState::from(&joint);
         joint.check()?;
-        joint.hold(&self.bodies, &self.rigids)?;
+        joint.attach(&self.bodies, &self.rigids)?;
         self.wake_ends(&joint);
         Ok(self.joints.insert(joint))
     }
@@ -54,18 +54,21 @@ impl<D: Dim> World<D> {
         &self,
         joint: JointHandle,
     ) -> Result<Option<[D::Vector; 2]>, Error> {
-        let positions = self.joints.get(joint)?.places(&self.bodies, &self.rigids);
+        let positions = self
+            .joints
+            .get(joint)?
+            .anchor_positions(&self.bodies, &self.rigids);
         Ok(positions.map(|both| both.map(D::Vector::from_vec3)))
     }
 
     /// Removes broken joints, and reports an event for each.
-    pub(super) fn part_joints(&mut self, broken: Vec<JointHandle>) {
+    pub(super) fn remove_broken_joints(&mut self, broken: Vec<JointHandle>) {
         for joint in broken {
             // `broken` may list a joint twice: it broke when velocities were solved, and again when positions
             // were corrected. The second removal fails and is ignored.
-            if let Ok(parted) = self.joints.remove(joint) {
+            if let Ok(removed) = self.joints.remove(joint) {
                 self.events.push(Event::JointBroke { joint });
-                self.wake_ends(&parted);
+                self.wake_ends(&removed);
             }
         }
     }

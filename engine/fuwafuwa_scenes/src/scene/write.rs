@@ -158,7 +158,7 @@ fn body_text<D: Dim>(
 /// cannot describe.
 fn by_fields<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
     let (grid, grading) = (body.grid(), body.grading());
-    if grading == Grading::Coarse || grid.left_count() < grid.solid_count() {
+    if grading == Grading::Coarse || grid.remaining_count() < grid.solid_count() {
         return None;
     }
     let size = grid.size().map(|extent| extent as usize);

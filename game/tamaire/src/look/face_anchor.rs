@@ -278,7 +278,7 @@ impl PieceSkin {
         let share = own / masses.iter().sum::<f32>();
         let (voxel, voxels) = (
             body.grid().voxel_size(),
-            body.grid().left_count() as f32 * share,
+            body.grid().remaining_count() as f32 * share,
         );
         let nodes = body.mesh().nodes();
         let nodes = nodes.filter(|&(id, _)| body.pieces().of_node(id) == piece);

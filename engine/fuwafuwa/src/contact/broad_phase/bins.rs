@@ -50,7 +50,10 @@ impl Bins {
             numbers: vec![0; points.len()],
             places: [places(), places(), places()],
         };
-        let of_point: Vec<u32> = points.iter().map(|at| bins.bin(bins.square(at))).collect();
+        let of_point: Vec<u32> = points
+            .iter()
+            .map(|at| bins.bin(bins.coordinates(at)))
+            .collect();
         for &bin in &of_point {
             bins.start[bin as usize + 1] += 1;
         }
@@ -177,8 +180,8 @@ impl Bins {
         // Half the width of the search box, slightly enlarged for rounding.
         let mut aside = Row::ZERO;
         aside[..D::N].fill(1.01 * reach);
-        let low = self.square(&(at - aside));
-        let high = self.square(&(at + aside));
+        let low = self.coordinates(&(at - aside));
+        let high = self.coordinates(&(at + aside));
         let count = |axis: usize| high[axis].wrapping_sub(low[axis]).wrapping_add(1);
         // Whether the search box covers the whole periodic grid along an axis.
         let is_far = |axis: usize| !(1..=self.mask).contains(&count(axis));
@@ -255,7 +258,7 @@ impl Bins {
 
     /// Returns the coordinates of the bin of a point, not yet wrapped to the periodic grid.
     #[inline(always)]
-    fn square(&self, at: &Row) -> Point {
+    fn coordinates(&self, at: &Row) -> Point {
         // Adding `LARGE` leaves the coordinate, in bins and rounded to an integer, in the lowest bits of the
         // sum. This is faster than a checked conversion.
         let whole = |along: f32| (along * self.inverse + LARGE).to_bits() as i32;
@@ -263,8 +266,8 @@ impl Bins {
     }
 
     #[inline(always)]
-    fn bin(&self, square: Point) -> u32 {
-        let [x, y, z] = square;
+    fn bin(&self, coordinates: Point) -> u32 {
+        let [x, y, z] = coordinates;
         let along = |k: i32| (k & self.mask) as u32;
         along(x) | along(y) << self.bits | along(z) << (2 * self.bits)
     }

@@ -36,12 +36,12 @@ pub struct ContactSphere {
     pub asleep: bool,
     /// Bit mask of the bare faces of the voxel. On each axis, bit 2 · axis is the face on the low side, and
     /// bit 2 · axis + 1 the face on the high side.
-    bare: u8,
+    exposed_faces: u8,
     /// Voxel of the element.
     voxel: [i16; 3],
     /// Bit mask of the voxels around the sphere's voxel that share a node with that voxel. Bit x + 3 y + 9 z
     /// stands for the voxel at the offset (x − 1, y − 1, z − 1).
-    bound: u32,
+    connected_voxels: u32,
     /// Corner nodes of the element; in 2D only the first four are used.
     pub nodes: [NodeId; 8],
 }
@@ -59,8 +59,8 @@ pub fn mean<D: Dim, I: Id>(rows: &IndexVec<I, Row>, nodes: &[I; 8]) -> Row {
 impl ContactSphere {
     /// Returns the contact sphere of an element; `None` if the element is not at the surface.
     pub fn of<D: Dim>(slot: BodySlot, body: &SoftBody<D>, id: ElementId) -> Option<Self> {
-        let bare = body.exposed_faces(id)?;
-        if bare == 0 {
+        let exposed_faces = body.exposed_faces(id)?;
+        if exposed_faces == 0 {
             return None;
         }
         let element = body.mesh().element(id)?;
@@ -73,9 +73,9 @@ impl ContactSphere {
             piece,
             radius: 0.5 * body.grid().voxel_size(),
             asleep: body.pieces().list[piece].asleep,
-            bare,
+            exposed_faces,
             voxel: element.cell.at.map(|k| k as i16),
-            bound: body.connected_voxels(id),
+            connected_voxels: body.connected_voxels(id),
             nodes,
         })
     }
@@ -96,7 +96,7 @@ impl ContactSphere {
         Site {
             body: self.body,
             voxel: self.voxel,
-            bound: self.bound,
+            connected_voxels: self.connected_voxels,
         }
     }
 
@@ -108,13 +108,13 @@ impl ContactSphere {
 
     /// Returns whether the voxel of the sphere is a crumb: a piece of its own.
     pub fn is_crumb<D: Dim>(&self) -> bool {
-        self.bare.count_ones() as usize == 2 * D::N
+        self.exposed_faces.count_ones() as usize == 2 * D::N
     }
 
     /// Returns whether the sphere has an outward direction: whether on some axis exactly one face of its
     /// voxel is bare.
     pub fn leads_out(&self) -> bool {
-        (self.bare ^ self.bare >> 1) & 0b1_0101 != 0
+        (self.exposed_faces ^ self.exposed_faces >> 1) & 0b1_0101 != 0
     }
 
     /// Returns the sum of the vectors from the centre of the element to its bare faces [m], which points out
@@ -122,7 +122,8 @@ impl ContactSphere {
     pub fn outward<D: Dim>(&self, position: &IndexVec<NodeId, Row>) -> Row {
         let mut sum = Row::ZERO;
         for corner in 0..D::CORNERS {
-            let is_bare = |axis: usize, side: usize| f32::from(self.bare >> (2 * axis + side) & 1);
+            let is_bare =
+                |axis: usize, side: usize| f32::from(self.exposed_faces >> (2 * axis + side) & 1);
             // Each bare face adds the vector from the centre of the element to the centre of that face. This
             // vector is half the vector from the opposite face to the bare one.
             let weight: f32 = (0..D::N)
@@ -153,8 +154,8 @@ impl ContactSphere {
 pub struct Site {
     pub body: BodySlot,
     pub voxel: [i16; 3],
-    /// Copy of [`ContactSphere::bound`].
-    pub bound: u32,
+    /// Copy of [`ContactSphere::connected_voxels`].
+    pub connected_voxels: u32,
 }
 
 impl Site {
@@ -181,15 +182,16 @@ impl Site {
             return false;
         }
         let (common, turn) = COMMON[(x + 5 * y + 25 * z) as usize];
-        self.bound & other.bound.rotate_left(turn) & common != 0
+        self.connected_voxels & other.connected_voxels.rotate_left(turn) & common != 0
     }
 }
 
 /// Table for [`Site::is_held_to`]: a mask and a rotation for each offset of the second voxel from the first,
 /// up to two voxels per axis. The entry of the offset (x, y, z) has the index (x + 2) + 5 (y + 2) + 25 (z +
 /// 2). The mask selects, among the 27 voxels around the first voxel, those that touch both voxels. If the two
-/// voxels are adjacent, the mask selects only the second voxel, because [`Site::bound`] includes a sphere's
-/// own voxel. The rotation aligns the bits of the second sphere's `bound` with those of the first.
+/// voxels are adjacent, the mask selects only the second voxel, because [`Site::connected_voxels`] includes a
+/// sphere's own voxel. The rotation aligns the bits of the second sphere's `connected_voxels` with those of
+/// the first.
 const COMMON: [(u32, u32); 125] = common();
 
 const fn common() -> [(u32, u32); 125] {

@@ -26,7 +26,7 @@ pub struct Spheres {
     by_voxel: IndexVec<BodySlot, Vec<SphereId>>,
     /// Pairs of spheres on opposite crack faces: neighbours in a piece that only contacts keep apart.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub crack_faces: Vec<[SphereId; 2]>,
+    pub crack_face_pairs: Vec<[SphereId; 2]>,
     /// For each body, bookmark of the last change of the body that `list` includes.
     #[cfg_attr(feature = "serde", serde(skip))]
     followed: IndexVec<BodySlot, Bookmark>,
@@ -53,7 +53,7 @@ pub struct Spheres {
 
 hash_state! {
     struct Spheres { keys } skip {
-        list, by_voxel, crack_faces, followed, awake, centres, close, is_close, velocities, moved,
+        list, by_voxel, crack_face_pairs, followed, awake, centres, close, is_close, velocities, moved,
     }
 }
 
@@ -186,10 +186,10 @@ impl Spheres {
         self.centres.clear();
         self.centres.extend(self.list.iter().map(centre));
         self.make_room();
-        self.crack_faces.clear();
+        self.crack_face_pairs.clear();
         for own in self.list.ids() {
             let body = bodies.at(self.list[own].body);
-            self.find_lips(own, body, |other| other > own);
+            self.find_crack_face_pairs(own, body, |other| other > own);
         }
         let number = |&(slot, id): &Key| {
             let (body, by_voxel) = (bodies.find(slot)?, &self.by_voxel[slot]);
@@ -237,24 +237,24 @@ impl Spheres {
         changed.extend(&touched);
         let mut is_touched: IndexVec<SphereId, bool> = vec![false; self.list.len()].into();
         touched.iter().for_each(|&own| is_touched[own] = true);
-        let is_known = |lips: &[SphereId; 2]| lips.iter().all(|&own| !is_touched[own]);
-        self.crack_faces.retain(is_known);
+        let is_known = |pair: &[SphereId; 2]| pair.iter().all(|&own| !is_touched[own]);
+        self.crack_face_pairs.retain(is_known);
         if !changes.detached.is_empty() {
             for sphere in self.list.iter_mut().filter(|sphere| sphere.body == slot) {
                 sphere.piece = body.pieces().of_element(sphere.element);
             }
             let list = &self.list;
             let piece = |own: SphereId| (list[own].body, list[own].piece);
-            self.crack_faces.retain(|&[a, b]| piece(a) == piece(b));
+            self.crack_face_pairs.retain(|&[a, b]| piece(a) == piece(b));
         }
         for own in touched {
-            self.find_lips(own, body, |other| !is_touched[other] || other > own);
+            self.find_crack_face_pairs(own, body, |other| !is_touched[other] || other > own);
         }
     }
 
-    /// Adds to `crack_faces` the pairs of a sphere with those near spheres of its piece that no elastic force
-    /// keeps apart from it. Tests only spheres for which `applies` is true.
-    fn find_lips<D: Dim>(
+    /// Adds to `crack_face_pairs` the pairs of a sphere with those near spheres of its piece that no elastic
+    /// force keeps apart from it. Tests only spheres for which `applies` is true.
+    fn find_crack_face_pairs<D: Dim>(
         &mut self,
         id: SphereId,
         body: &SoftBody<D>,
@@ -274,7 +274,7 @@ impl Spheres {
                     let sphere = &self.list[other];
                     let is_held = other == id || site.is_held_to(&sphere.site());
                     if !is_held && sphere.piece == own.piece {
-                        self.crack_faces.push([id, other]);
+                        self.crack_face_pairs.push([id, other]);
                     }
                 }
             }
@@ -295,7 +295,7 @@ impl Spheres {
 
     /// Sets the close spheres: those in pairs or escape contacts, whose centres and velocities are updated in
     /// each substep.
-    pub fn note_close(&mut self, close: impl Iterator<Item = SphereId>) {
+    pub fn set_close(&mut self, close: impl Iterator<Item = SphereId>) {
         let was_close = self.is_close.clone();
         self.is_close.fill(false);
         close.for_each(|id| self.is_close[id] = true);

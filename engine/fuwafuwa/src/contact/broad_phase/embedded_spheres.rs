@@ -3,9 +3,9 @@
 //! Inside a piece there are no contact spheres that could push anything out, so a crumb forced through a
 //! stretched surface would stay there. Therefore, once per tick, sphere centres are tested against the
 //! elements of pieces that have more elements than the sphere's own piece. A sphere with its centre in such
-//! an element is *embedded* (`captive` in the code), and the piece of that element is its *host piece*
-//! (`captor`). The sphere has no contacts with its host piece, except for the *escape contact* with the
-//! nearest surface sphere of that piece, the *exit*.
+//! an element is an *embedded sphere*, and the piece of that element is its *host piece*. The sphere has no
+//! contacts with its host piece, except for the *escape contact* with the nearest surface sphere of that
+//! piece, the *exit*.
 
 use super::bins::Bins;
 use super::contact_sphere::{ContactSphere, SphereId};
@@ -38,14 +38,14 @@ type HostPiece = (BodySlot, PieceId);
 
 /// Spheres embedded in other pieces.
 #[derive(Clone, Debug, Default)]
-pub struct Captives {
+pub struct EmbeddedSpheres {
     /// Embedded spheres, ascending.
     pub list: Vec<EmbeddedSphere>,
     /// Host piece of each sphere; `None` if the sphere is not embedded.
-    captors: IndexVec<SphereId, Option<HostPiece>>,
+    host_pieces: IndexVec<SphereId, Option<HostPiece>>,
 }
 
-impl Captives {
+impl EmbeddedSpheres {
     /// Finds the spheres with their centre in a piece that has more elements than their own piece.
     pub fn find<D: Dim>(
         &mut self,
@@ -54,8 +54,8 @@ impl Captives {
         bodies: &SoftBodies<D>,
     ) {
         self.list.clear();
-        self.captors.clear();
-        self.captors.resize(spheres.list.len(), None);
+        self.host_pieces.clear();
+        self.host_pieces.resize(spheres.list.len(), None);
         if spheres.awake.is_empty() {
             return;
         }
@@ -83,13 +83,13 @@ impl Captives {
             }
             for (inner, outer, at) in [(0, b, at), (1, a, other)] {
                 let sphere = pair.spheres[inner];
-                let captor = (outer.body, outer.piece);
+                let host_piece = (outer.body, outer.piece);
                 let is_smaller = own(&pieces, sphere) < own(&pieces, pair.spheres[1 - inner]);
                 let body = bodies.at(outer.body);
                 let layers = bodies.at(spheres.list[sphere].body).layers();
                 let may_be = is_smaller && layers.meet(body.layers());
                 if may_be && body.holds(outer.element, at.xyz()) {
-                    self.captors[sphere] = Some(captor);
+                    self.host_pieces[sphere] = Some(host_piece);
                 }
             }
         }
@@ -130,26 +130,26 @@ impl Captives {
                 for &at in &inside {
                     let number = bins.numbers()[at as usize] as usize;
                     let (sphere, at) = (near[number], centres[number].xyz());
-                    let body = bodies.at(inner.captor.0);
+                    let body = bodies.at(inner.host_piece.0);
                     let layers = bodies.at(spheres.list[sphere].body).layers();
                     let is_smaller = own(&pieces, sphere) < inner.count;
                     let may_be = is_smaller && layers.meet(body.layers());
                     if may_be && body.holds(inner.element, at) {
-                        self.captors[sphere] = Some(inner.captor);
+                        self.host_pieces[sphere] = Some(inner.host_piece);
                     }
                 }
             }
         }
         let mut exits: BTreeMap<HostPiece, Exits> = BTreeMap::new();
         for sphere in small {
-            let Some(captor) = self.captors[sphere] else {
+            let Some(host_piece) = self.host_pieces[sphere] else {
                 continue;
             };
-            let exits = exits.entry(captor);
-            let exits = exits.or_insert_with(|| Exits::of(captor, spheres, bodies));
+            let exits = exits.entry(host_piece);
+            let exits = exits.or_insert_with(|| Exits::of(host_piece, spheres, bodies));
             match exits.nearest::<D>(spheres.centres[sphere]) {
                 Some(exit) => self.list.push(EmbeddedSphere { sphere, exit }),
-                None => self.captors[sphere] = None,
+                None => self.host_pieces[sphere] = None,
             }
         }
     }
@@ -158,9 +158,9 @@ impl Captives {
     /// contains the sphere's exit. Until the next tick, the sphere has ordinary contacts with all other
     /// fragments.
     pub fn tear(&mut self, spheres: &Spheres) {
-        for captive in &self.list {
-            let exit = &spheres.list[captive.exit];
-            self.captors[captive.sphere] = Some((exit.body, exit.piece));
+        for embedded in &self.list {
+            let exit = &spheres.list[embedded.exit];
+            self.host_pieces[embedded.sphere] = Some((exit.body, exit.piece));
         }
     }
 
@@ -168,8 +168,8 @@ impl Captives {
     #[inline(always)]
     pub fn is_inside(&self, spheres: [SphereId; 2], [a, b]: [&ContactSphere; 2]) -> bool {
         let inside = |own: SphereId, other: &ContactSphere| {
-            let captor = self.captors.get(own.index()).copied().flatten();
-            captor.is_some_and(|captor| captor == (other.body, other.piece))
+            let host_piece = self.host_pieces.get(own.index()).copied().flatten();
+            host_piece.is_some_and(|host_piece| host_piece == (other.body, other.piece))
         };
         inside(spheres[0], b) || inside(spheres[1], a)
     }
@@ -229,7 +229,7 @@ struct Inner {
     level: u8,
     element: ElementId,
     /// Piece that contains the element.
-    captor: HostPiece,
+    host_piece: HostPiece,
     /// Number of elements in this piece.
     count: u32,
     /// Mean position of the element's nodes [m].
@@ -260,7 +260,7 @@ fn inner_elements<D: Dim>(bodies: &SoftBodies<D>, pieces: &Extents, within: &Ext
                 found.push(Inner {
                     level,
                     element: id,
-                    captor: (slot, piece),
+                    host_piece: (slot, piece),
                     count: extent.count,
                     centre,
                     radius,
@@ -288,8 +288,8 @@ type Extents = IndexVec<BodySlot, IndexVec<PieceId, Extent>>;
 struct Extent {
     /// Number of elements.
     count: u32,
-    /// Whether the piece has inner elements, which have no bare face. [`Captives::find`] clears the flag if
-    /// the box contains no sphere of a smaller piece.
+    /// Whether the piece has inner elements, which have no bare face. [`EmbeddedSpheres::find`] clears the
+    /// flag if the box contains no sphere of a smaller piece.
     has_inner: bool,
     /// Low corner of the box around the centres of the piece's contact spheres [m].
     low: Row,
@@ -404,7 +404,7 @@ mod tests {
         let inner = |radius| Inner {
             level: 1,
             element: ElementId(0),
-            captor: (BodySlot(0), PieceId(0)),
+            host_piece: (BodySlot(0), PieceId(0)),
             count: 9,
             centre: Row::ZERO,
             radius,

@@ -11,9 +11,9 @@ use crate::soft_body::element_forces::Row;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Impulse {
     /// Normal impulse in the last substep [N s].
-    pub pressed: f32,
+    pub normal_impulse: f32,
     /// Friction impulse in the last substep [N s].
-    pub dragged: Row,
+    pub friction_impulse: Row,
     /// Sum of the normal impulses since the start of the tick [N s].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub total: f32,
@@ -22,12 +22,12 @@ pub struct Impulse {
     pub speed: f32,
 }
 
-hash_state! { struct Impulse { pressed, dragged } skip { total, speed } }
+hash_state! { struct Impulse { normal_impulse, friction_impulse } skip { total, speed } }
 
 impl Impulse {
     /// Returns whether the contact had an impulse in the last substep.
     pub fn is_known(&self) -> bool {
-        self.pressed != 0.0 || self.dragged != Row::ZERO
+        self.normal_impulse != 0.0 || self.friction_impulse != Row::ZERO
     }
 }
 
@@ -35,7 +35,7 @@ impl Impulse {
 impl Impulse {
     /// Clears the unused components of the friction impulse: the fourth one, and in 2D also the third.
     pub fn flatten<D: Dim>(&mut self) {
-        let aside = self.dragged[D::N..].iter_mut();
+        let aside = self.friction_impulse[D::N..].iter_mut();
         aside
             .filter(|along| **along != 0.0)
             .for_each(|along| *along = 0.0);

@@ -20,11 +20,11 @@ const SLACK: f32 = 0.4;
 /// Distance by which a moving rigid body may exceed the motion predicted from its velocity before all pairs
 /// are searched again [voxels]. It is larger than [`SLACK`], because the coupling force accelerates hands
 /// strongly.
-const HAND_SLACK: f32 = 1.0;
+const RIGID_SLACK: f32 = 1.0;
 
 /// Width of a bin of nodes [voxels]. A rigid shape is first tested against whole bins, and only in nearby
 /// bins against each node.
-const SQUARE: f32 = 4.0;
+const BIN_WIDTH: f32 = 4.0;
 
 /// Pair of a node and a rigid body that may touch.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -98,9 +98,9 @@ fn serialize_known<S: serde::Serializer>(list: &[NodePair], to: S) -> Result<S::
 #[derive(Copy, Clone, Debug)]
 struct Leeway {
     /// Distance that the rigid body may move before a full search is due [m].
-    most: f32,
+    allowed: f32,
     /// Upper bound of the distance that the rigid body has moved since the last full search [m].
-    come: f32,
+    moved: f32,
 }
 
 impl NodePairs {
@@ -114,7 +114,7 @@ impl NodePairs {
     }
 
     /// Requests a full search, because a rigid body changed.
-    pub fn look_again(&mut self) {
+    pub fn request_full_search(&mut self) {
         self.leeways.clear();
     }
 
@@ -170,15 +170,18 @@ impl NodePairs {
             return;
         }
         for (leeway, rigid) in self.leeways.iter_mut().zip(rigids.iter()) {
-            leeway.come += rigid.top_speed() * duration;
+            leeway.moved += rigid.top_speed() * duration;
         }
-        let outrun = self.leeways.iter().any(|leeway| leeway.come > leeway.most);
+        let outrun = self
+            .leeways
+            .iter()
+            .any(|leeway| leeway.moved > leeway.allowed);
         if outrun || self.leeways.is_empty() {
             self.find_all(bodies, rigids, left);
             return;
         }
         if self.spare <= 0.0 {
-            self.find_strayed(bodies);
+            self.find_beyond_slack(bodies);
         }
         if self.changed.is_empty() {
             return;
@@ -197,7 +200,7 @@ impl NodePairs {
                 let at = body.positions()[node].xyz();
                 rigid.meets(body.layers())
                     && body.mesh().is_alive(node)
-                    && rigid.shape().distance(at).0 <= reach + leeway.most
+                    && rigid.shape().distance(at).0 <= reach + leeway.allowed
             };
             let near = changed.iter().filter(is_near);
             found.extend(near.map(|&(body, node)| (own, body, node)));
@@ -218,35 +221,38 @@ impl NodePairs {
         let size = sizes.fold(0.0, f32::max);
         let leeway = |rigid: &RigidState| {
             let slack = if rigid.moves() {
-                HAND_SLACK * size
+                RIGID_SLACK * size
             } else {
                 0.0
             };
-            let most = slack + rigid.top_speed() * left;
-            Leeway { most, come: 0.0 }
+            let allowed = slack + rigid.top_speed() * left;
+            Leeway {
+                allowed,
+                moved: 0.0,
+            }
         };
         self.leeways.clear();
         self.leeways.extend(rigids.iter().map(leeway));
         self.anchors
             .resize(bodies.slot_count(), IndexVec::default());
-        let mut squares = Vec::new();
+        let mut node_bins = Vec::new();
         for (slot, body) in bodies.by_slot() {
             for &node in body.awake_nodes() {
                 self.anchor(slot, node, bodies, left);
             }
             let reach = |node| self.reach(slot, node, body.grid().voxel_size());
-            squares.push((slot, body, Squares::of(body, reach)));
+            node_bins.push((slot, body, NodeBins::of(body, reach)));
         }
         let mut found = Vec::new();
         let mut near: Vec<NodeId> = Vec::new();
         for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
-            let met = squares.iter();
+            let met = node_bins.iter();
             let met = met.filter(|(_, body, _)| rigid.meets(body.layers()));
-            for (slot, body, squares) in met {
+            for (slot, body, node_bins) in met {
                 near.clear();
-                squares.within(leeway.most, rigid.shape(), &mut near);
+                node_bins.within(leeway.allowed, rigid.shape(), &mut near);
                 if rigid.moves() && body.awake_nodes().len() < body.mesh().node_count() {
-                    let reach = leeway.most + MARGIN * body.grid().voxel_size();
+                    let reach = leeway.allowed + MARGIN * body.grid().voxel_size();
                     let is_near = |&node: &NodeId| {
                         let at = body.positions()[node].xyz();
                         body.pieces().sleeps(node) && rigid.shape().distance(at).0 <= reach
@@ -263,7 +269,7 @@ impl NodePairs {
 
     /// Adds to `changed` the nodes that have exceeded their allowed distance in `anchors`, and updates
     /// `spare` for the other nodes.
-    fn find_strayed<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
+    fn find_beyond_slack<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         let mut spare = f32::INFINITY;
         for (slot, body) in bodies.by_slot() {
             let Some(anchors) = self.anchors.get(slot.index()) else {
@@ -273,13 +279,13 @@ impl NodePairs {
                 let Some(anchor) = anchors.get(node.index()) else {
                     continue;
                 };
-                let [x, y, z, most] = anchor.to_array();
-                let come = body.positions()[node] - Row::from_array([x, y, z, 0.0]);
-                let come = come.dot(come);
-                if come > most * most {
+                let [x, y, z, allowed] = anchor.to_array();
+                let moved = body.positions()[node] - Row::from_array([x, y, z, 0.0]);
+                let moved = moved.dot(moved);
+                if moved > allowed * allowed {
                     self.changed.push((slot, node));
                 } else {
-                    let left = most - come.sqrt();
+                    let left = allowed - moved.sqrt();
                     spare = if left < spare { left } else { spare };
                 }
             }
@@ -295,9 +301,13 @@ impl NodePairs {
         anchors.resize(body.positions().len(), Row::ZERO);
         let [x, y, z, _] = body.positions()[node].to_array();
         let speed = body.velocities()[node].length();
-        let most = SLACK * body.grid().voxel_size() + speed * left;
-        anchors[node] = Row::from_array([x, y, z, most]);
-        self.spare = if most < self.spare { most } else { self.spare };
+        let allowed = SLACK * body.grid().voxel_size() + speed * left;
+        anchors[node] = Row::from_array([x, y, z, allowed]);
+        self.spare = if allowed < self.spare {
+            allowed
+        } else {
+            self.spare
+        };
     }
 
     /// Returns the distance from a resting rigid shape within which a node is paired with that shape [m];
@@ -355,33 +365,33 @@ impl NodePair {
 
 /// Awake nodes of a body, grouped in bins. A rigid shape is first tested against each bin as a whole: most
 /// bins are too far away, even in a body torn into many pieces.
-struct Squares {
+struct NodeBins {
     /// Awake nodes, indexed by the point numbers of `bins`. The second entry is the distance from a resting
     /// shape within which the node is paired with the shape [m].
     nodes: Vec<(NodeId, f32)>,
     bins: Bins,
-    list: Vec<Square>,
+    list: Vec<NodeBin>,
 }
 
 /// Nodes of one bin: their index range in the bin order, a ball around them, and the largest distance at
 /// which one of them is paired with a resting shape [m].
-struct Square {
+struct NodeBin {
     points: Range<usize>,
     centre: Row,
     radius: f32,
     reach: f32,
 }
 
-impl Squares {
+impl NodeBins {
     fn of<D: Dim>(body: &SoftBody<D>, reach: impl Fn(NodeId) -> f32) -> Self {
         let nodes = body.awake_nodes().iter().map(|&node| (node, reach(node)));
         let nodes: Vec<(NodeId, f32)> = nodes.collect();
         let points = nodes.iter().map(|&(node, _)| body.positions()[node]);
         let points: Vec<Row> = points.collect();
-        let bins = Bins::new::<D>(&points, SQUARE * body.grid().voxel_size());
-        let squares = { bins.filled() }.map(|range| Square::around(&bins, range, &nodes));
+        let bins = Bins::new::<D>(&points, BIN_WIDTH * body.grid().voxel_size());
+        let node_bins = { bins.filled() }.map(|range| NodeBin::around(&bins, range, &nodes));
         Self {
-            list: squares.collect(),
+            list: node_bins.collect(),
             nodes,
             bins,
         }
@@ -391,11 +401,11 @@ impl Squares {
     /// them in `nodes`.
     fn within(&self, range: f32, shape: &Solid, near: &mut Vec<NodeId>) {
         let is_near = |at: Row, reach: f32| shape.distance(at.xyz()).0 <= reach;
-        for square in &self.list {
-            if !is_near(square.centre, square.radius + square.reach + range) {
+        for bin in &self.list {
+            if !is_near(bin.centre, bin.radius + bin.reach + range) {
                 continue;
             }
-            for place in square.points.clone() {
+            for place in bin.points.clone() {
                 let (node, reach) = self.nodes[self.bins.numbers()[place] as usize];
                 if is_near(self.bins.point(place), reach + range) {
                     near.push(node);
@@ -405,7 +415,7 @@ impl Squares {
     }
 }
 
-impl Square {
+impl NodeBin {
     fn around(bins: &Bins, points: Range<usize>, nodes: &[(NodeId, f32)]) -> Self {
         let (mut low, mut high) = ([f32::MAX; 4], [f32::MIN; 4]);
         let mut furthest = 0.0f32;

@@ -37,7 +37,7 @@ pub struct PieceSite {
 impl Neighbours {
     /// Returns the table for swept spheres, in their order.
     pub fn of<D: Dim>(
-        travellers: &[SweptSphere],
+        swept_spheres: &[SweptSphere],
         spheres: &Spheres,
         bodies: &SoftBodies<D>,
     ) -> Self {
@@ -49,15 +49,17 @@ impl Neighbours {
         }
         neighbours.awake.push(0);
         // Pads the columns, so that a SIMD read of eight values may start at any index.
-        neighbours.pieces.resize(travellers.len() + LANES, u32::MAX);
+        neighbours
+            .pieces
+            .resize(swept_spheres.len() + LANES, u32::MAX);
         for column in &mut neighbours.voxels {
-            column.resize(travellers.len() + LANES, 0);
+            column.resize(swept_spheres.len() + LANES, 0);
         }
-        for (at, traveller) in travellers.iter().enumerate() {
-            let PieceSite { piece, voxel } = neighbours.site(traveller.sphere, spheres);
+        for (at, swept) in swept_spheres.iter().enumerate() {
+            let PieceSite { piece, voxel } = neighbours.site(swept.sphere, spheres);
             neighbours.pieces[at] = piece;
             (0..3).for_each(|axis| neighbours.voxels[axis][at] = voxel[axis]);
-            let awake = neighbours.awake[at] + u32::from(!traveller.asleep);
+            let awake = neighbours.awake[at] + u32::from(!swept.asleep);
             neighbours.awake.push(awake);
         }
         neighbours

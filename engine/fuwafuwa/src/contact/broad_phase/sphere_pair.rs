@@ -70,7 +70,7 @@ pub fn renumber(list: &mut Vec<SpherePair>, numbers: &IndexVec<SphereId, SphereI
         let [a, b] = pair.spheres.map(number);
         pair.spheres = [a.min(b), a.max(b)];
         if a > b {
-            pair.impulse.dragged = -pair.impulse.dragged;
+            pair.impulse.friction_impulse = -pair.impulse.friction_impulse;
         }
         pair.spheres[1] != SphereId::NONE
     });
@@ -151,11 +151,11 @@ mod tests {
 
     #[test]
     fn renumber_keeps_impulses_and_drops_removed_spheres() {
-        let pair = |spheres: [u32; 2], pressed| SpherePair {
+        let pair = |spheres: [u32; 2], normal_impulse| SpherePair {
             spheres: spheres.map(SphereId),
             impulse: Impulse {
-                pressed,
-                dragged: Row::from_array([pressed; 4]),
+                normal_impulse,
+                friction_impulse: Row::from_array([normal_impulse; 4]),
                 total: 0.0,
                 speed: 0.0,
             },
@@ -168,9 +168,9 @@ mod tests {
         assert_eq!(pairs.len(), 1);
         let kept = pairs[0];
         assert_eq!(kept.spheres, [0, 1].map(SphereId));
-        assert_eq!(kept.impulse.pressed, 2.0);
+        assert_eq!(kept.impulse.normal_impulse, 2.0);
         assert_eq!(
-            kept.impulse.dragged,
+            kept.impulse.friction_impulse,
             Row::from_array([-2.0; 4]),
             "the order of the spheres is swapped"
         );

@@ -31,9 +31,9 @@ use crate::soft_body::element_forces::Row;
 /// each long path are searched separately.
 const LONG_SHARE: usize = 32;
 /// Maximum for half the length of a short path, as a share of the search distance.
-const LONGEST_SHORT: f32 = 0.125;
+const MAX_SHORT_SWEEP: f32 = 0.125;
 /// Maximum duration of the paths [s]. In this time, gravity takes a falling sphere 5 cm off its path.
-const LONGEST_TIME: f32 = 0.1;
+const MAX_PATH_TIME: f32 = 0.1;
 /// A full search is faster than separate searches if more than 1 / `MANY` of the awake spheres must be
 /// searched.
 const MANY: usize = 4;
@@ -46,7 +46,7 @@ const BINNED: u32 = u32::MAX;
 
 /// Number of spheres that a thread searches at a time. It is smaller than `CHUNK_SIZE`, because the search of
 /// each sphere visits several bins.
-const LOOKS: usize = CHUNK_SIZE / 8;
+const SEARCHES_PER_CHUNK: usize = CHUNK_SIZE / 8;
 
 /// Pairs of spheres that may touch before their paths end.
 #[derive(Clone, Debug, Default)]
@@ -76,7 +76,7 @@ pub struct SpherePairs {
     frame: Row,
     /// Half the length of the longest short path [m].
     #[cfg_attr(feature = "serde", serde(skip))]
-    short: f32,
+    max_short_sweep: f32,
     /// Spheres that are not found through the bins: those with long paths, or with paths newer than the bins.
     #[cfg_attr(feature = "serde", serde(skip))]
     loose: Vec<SweptSphere>,
@@ -100,13 +100,13 @@ pub struct SpherePairs {
     reach: f32,
     /// Slack of the smallest spheres [m].
     #[cfg_attr(feature = "serde", serde(skip))]
-    least_stray: f32,
+    min_slack: f32,
     /// Distance that every sphere can still deviate from its path without exceeding its slack [m].
     #[cfg_attr(feature = "serde", serde(skip))]
     spare: f32,
     /// Highest speed along any path [m/s].
     #[cfg_attr(feature = "serde", serde(skip))]
-    pace: f32,
+    max_speed: f32,
 }
 
 impl HashState for SpherePairs {
@@ -119,7 +119,7 @@ impl HashState for SpherePairs {
             binned_at: _,
             binned: _,
             frame: _,
-            short: _,
+            max_short_sweep: _,
             loose: _,
             loose_at: _,
             is_new_tick: _,
@@ -127,9 +127,9 @@ impl HashState for SpherePairs {
             elapsed: _,
             duration: _,
             reach: _,
-            least_stray: _,
+            min_slack: _,
             spare: _,
-            pace: _,
+            max_speed: _,
         } = self;
         hash_all(list.iter().filter(|pair| pair.is_known()), hash);
     }
@@ -159,7 +159,7 @@ impl SpherePairs {
     /// deviation from a path in this substep. No node moved farther than `distance` [m] in the substep.
     pub fn pass(&mut self, duration: f32, distance: f32) {
         self.elapsed += duration;
-        self.spare -= distance + self.pace * duration;
+        self.spare -= distance + self.max_speed * duration;
     }
 
     /// Updates the spheres and the list of pairs. Returns whether the list changed or a new tick began.
@@ -179,7 +179,7 @@ impl SpherePairs {
             spheres.move_close(bodies);
         } else {
             spheres.move_all(bodies);
-            self.find_strayed(spheres);
+            self.find_beyond_slack(spheres);
         }
         let mut changed = std::mem::take(&mut self.changed);
         if changed.is_empty() {
@@ -196,18 +196,18 @@ impl SpherePairs {
     }
 
     /// Adds spheres that have exceeded their slack to `changed`, and updates `spare` for the other spheres.
-    fn find_strayed(&mut self, spheres: &Spheres) {
+    fn find_beyond_slack(&mut self, spheres: &Spheres) {
         let mut spare = f32::INFINITY;
         for &sphere in &spheres.awake {
             let Some(path) = self.paths.get(sphere.index()) else {
                 continue;
             };
-            let strayed = spheres.centres[sphere] - path.at(self.elapsed);
-            let (strayed, most) = (strayed.dot(strayed), most_stray(spheres, sphere));
-            if strayed > most * most {
+            let deviation = spheres.centres[sphere] - path.at(self.elapsed);
+            let (deviation, slack) = (deviation.dot(deviation), slack_of(spheres, sphere));
+            if deviation > slack * slack {
                 self.changed.push(sphere);
             } else {
-                let left = most - strayed.sqrt();
+                let left = slack - deviation.sqrt();
                 spare = if left < spare { left } else { spare };
             }
         }
@@ -221,7 +221,7 @@ impl SpherePairs {
     }
 
     /// Starts a new path of a sphere at its present position.
-    fn lay<D: Dim>(&mut self, sphere: SphereId, spheres: &Spheres, bodies: &SoftBodies<D>) {
+    fn start_path<D: Dim>(&mut self, sphere: SphereId, spheres: &Spheres, bodies: &SoftBodies<D>) {
         let now = spheres.centres[sphere];
         let start = &mut self.starts[sphere];
         let (mut velocity, mut laid) = (Row::ZERO, Start::UNKNOWN);
@@ -236,11 +236,15 @@ impl SpherePairs {
         let from = now - velocity * self.elapsed;
         self.paths[sphere] = Path { from, velocity };
         let speed = velocity.length();
-        self.pace = if speed > self.pace { speed } else { self.pace };
+        self.max_speed = if speed > self.max_speed {
+            speed
+        } else {
+            self.max_speed
+        };
     }
 
     /// Returns the swept sphere of a sphere: the sphere with its path.
-    fn traveller(&self, sphere: SphereId, spheres: &Spheres) -> SweptSphere {
+    fn swept_sphere(&self, sphere: SphereId, spheres: &Spheres) -> SweptSphere {
         let ContactSphere { radius, asleep, .. } = spheres.list[sphere];
         SweptSphere {
             path: self.paths[sphere],
@@ -259,15 +263,15 @@ impl SpherePairs {
         self.starts
             .iter_mut()
             .for_each(|start| start.time -= self.elapsed);
-        (self.elapsed, self.pace) = (0.0, 0.0);
+        (self.elapsed, self.max_speed) = (0.0, 0.0);
         let all = spheres.list.ids();
-        all.for_each(|sphere| self.lay(sphere, spheres, bodies));
+        all.for_each(|sphere| self.start_path(sphere, spheres, bodies));
         self.measure(spheres);
         let bins = self.bin::<D>(spheres);
         let neighbours = Neighbours::of(&self.binned, spheres, bodies);
         let mut found = self.short_pairs::<D>(&bins, &neighbours);
         found.extend(self.long_pairs::<D>(&bins, &neighbours, spheres));
-        found.extend(self.lips(spheres));
+        found.extend(self.crack_face_pairs(spheres));
         self.bins = Some(bins);
         merge(&mut self.list, &found, &vec![true; count].into());
     }
@@ -277,17 +281,17 @@ impl SpherePairs {
         self.binned_at = self.remaining().middle;
         let middles = self.paths.iter().map(|path| path.at(self.binned_at));
         let middles: Vec<Row> = middles.collect();
-        let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
+        let bins = Bins::new::<D>(&middles, self.reach + 2.0 * self.max_short_sweep);
         let numbers = bins.numbers().iter().copied().map(SphereId);
-        let binned = numbers.map(|sphere| self.traveller(sphere, spheres));
+        let binned = numbers.map(|sphere| self.swept_sphere(sphere, spheres));
         self.binned = binned.collect();
         self.loose.clear();
         self.loose_at.clear();
         self.loose_at.resize(middles.len(), BINNED);
-        for traveller in &self.binned {
-            if traveller.sweep > self.short {
-                self.loose_at[traveller.sphere] = self.loose.len() as u32;
-                self.loose.push(*traveller);
+        for swept in &self.binned {
+            if swept.sweep > self.max_short_sweep {
+                self.loose_at[swept.sphere] = self.loose.len() as u32;
+                self.loose.push(*swept);
             }
         }
         bins
@@ -300,18 +304,18 @@ impl SpherePairs {
         let (smallest, largest) = radii.fold((f32::MAX, 0.0f32), |(low, high), radius| {
             (low.min(radius), high.max(radius))
         });
-        self.least_stray = 2.0 * SLACK * smallest;
-        self.spare = self.least_stray;
+        self.min_slack = 2.0 * SLACK * smallest;
+        self.spare = self.min_slack;
         self.reach = widened(2.0 * largest);
         self.set_frame(spheres);
         let speeds = { spheres.awake.iter() }.map(|&sphere| self.speed(sphere));
-        let most = usual(speeds.filter(|speed| speed.is_finite()).collect());
-        let longest = LONGEST_SHORT * self.reach;
-        self.duration = match most * LONGEST_TIME > 2.0 * longest {
-            true => 2.0 * longest / most,
-            false => LONGEST_TIME,
+        let usual_speed = usual(speeds.filter(|speed| speed.is_finite()).collect());
+        let longest = MAX_SHORT_SWEEP * self.reach;
+        self.duration = match usual_speed * MAX_PATH_TIME > 2.0 * longest {
+            true => 2.0 * longest / usual_speed,
+            false => MAX_PATH_TIME,
         };
-        self.short = most * self.span().half;
+        self.max_short_sweep = usual_speed * self.span().half;
     }
 
     /// Returns the speed of a sphere's path relative to `frame` [m/s], the mean velocity of all spheres.
@@ -322,13 +326,13 @@ impl SpherePairs {
     /// Returns whether a sphere is found through the bins: its path is short and has not changed since the bins
     /// were built.
     #[inline(always)]
-    fn is_binned(&self, traveller: &SweptSphere) -> bool {
-        self.loose_at[traveller.sphere] == BINNED
+    fn is_binned(&self, swept: &SweptSphere) -> bool {
+        self.loose_at[swept.sphere] == BINNED
     }
 
     /// Returns the pairs of spheres that both have short paths, except neighbours in a piece.
     fn short_pairs<D: Dim>(&self, bins: &Bins, neighbours: &Neighbours) -> Vec<Vec<[SphereId; 2]>> {
-        let (span, reach) = (self.span(), self.reach + 2.0 * self.short);
+        let (span, reach) = (self.span(), self.reach + 2.0 * self.max_short_sweep);
         threads::map(bins.shares(), |share| {
             let mut found = Vec::new();
             on_widest_lanes!(simd => bins.pairs::<D, _>(
@@ -350,17 +354,17 @@ impl SpherePairs {
     }
 
     /// Returns the pairs of spheres on opposite crack faces that come close.
-    fn lips(&self, spheres: &Spheres) -> Vec<Vec<[SphereId; 2]>> {
+    fn crack_face_pairs(&self, spheres: &Spheres) -> Vec<Vec<[SphereId; 2]>> {
         // Index of each sphere in bin order.
         let mut order: IndexVec<SphereId, u32> = vec![0; self.binned.len()].into();
-        for (traveller, at) in self.binned.iter().zip(0..) {
-            order[traveller.sphere] = at;
+        for (swept, at) in self.binned.iter().zip(0..) {
+            order[swept.sphere] = at;
         }
         let span = self.span();
-        threads::map(spheres.crack_faces.chunks(CHUNK_SIZE), |share| {
+        threads::map(spheres.crack_face_pairs.chunks(CHUNK_SIZE), |share| {
             let mut found = Vec::new();
-            for &lips in share {
-                let [a, b] = lips.map(|sphere| &self.binned[order[sphere] as usize]);
+            for &faces in share {
+                let [a, b] = faces.map(|sphere| &self.binned[order[sphere] as usize]);
                 if a.meets(b, span) {
                     found.push(pair(a, b));
                 }
@@ -379,15 +383,15 @@ impl SpherePairs {
         let span = self.span();
         let middles = self.loose.iter().map(|long| long.path.at(span.middle));
         let middles: Vec<Row> = middles.collect();
-        let long = Bins::new::<D>(&middles, self.reach + 2.0 * self.short);
+        let long = Bins::new::<D>(&middles, self.reach + 2.0 * self.max_short_sweep);
         // Of two long paths, only the longer one searches the other, so that each pair is found once.
         let rank = |long: &SweptSphere| (long.sweep, long.sphere);
-        threads::map(self.loose.chunks(LOOKS), |share| {
+        threads::map(self.loose.chunks(SEARCHES_PER_CHUNK), |share| {
             let (mut found, mut near) = (Vec::new(), Vec::new());
             on_widest_lanes!(simd => for own in share {
                 let at = own.path.at(span.middle);
                 let site = neighbours.site(own.sphere, spheres);
-                let reach = self.reach + own.sweep + self.short;
+                let reach = self.reach + own.sweep + self.max_short_sweep;
                 bins.near::<D, _>(
                     simd,
                     at,
@@ -430,7 +434,7 @@ impl SpherePairs {
         self.loose_at.resize(count, BINNED);
         let mut is_changed: IndexVec<SphereId, bool> = vec![false; count].into();
         for &sphere in changed {
-            self.lay(sphere, spheres, bodies);
+            self.start_path(sphere, spheres, bodies);
             is_changed[sphere] = true;
         }
         if changed.len() * (self.loose.len() + changed.len()) > COMPARED * count {
@@ -452,10 +456,10 @@ impl SpherePairs {
             .as_ref()
             .expect("a full search has built the bins");
         let this = &*self;
-        let found = threads::map(changed.chunks(LOOKS), |share| {
+        let found = threads::map(changed.chunks(SEARCHES_PER_CHUNK), |share| {
             let (mut found, mut near) = (Vec::new(), Vec::new());
             on_widest_lanes!(simd => for &sphere in share {
-                let own = &this.traveller(sphere, spheres);
+                let own = &this.swept_sphere(sphere, spheres);
                 let is_first = |other: &SweptSphere| match is_changed[other.sphere] {
                     true => other.sphere > sphere,
                     false => true,
@@ -464,7 +468,7 @@ impl SpherePairs {
                 // of `frame`. Shifts the search position back by this motion.
                 let shift = this.frame * (span.middle - this.binned_at);
                 let at = own.path.at(span.middle) - shift;
-                let reach = this.reach + this.short + own.sweep;
+                let reach = this.reach + this.max_short_sweep + own.sweep;
                 bins.near::<D, _>(simd, at, reach, |_| 0, &mut near);
                 for &at in &near {
                     let other = &this.binned[at as usize];
@@ -483,19 +487,19 @@ impl SpherePairs {
             found
         });
         merge(&mut self.list, &found, &is_changed);
-        // New paths begin with their full slack; `find_strayed` has computed `spare` for the old paths.
-        self.spare = self.spare.min(self.least_stray);
+        // New paths begin with their full slack; `find_beyond_slack` has computed `spare` for the old paths.
+        self.spare = self.spare.min(self.min_slack);
     }
 
     /// Moves a sphere with a new path from the bins to the loose spheres.
     fn loosen(&mut self, sphere: SphereId, spheres: &Spheres) {
-        let traveller = self.traveller(sphere, spheres);
+        let swept = self.swept_sphere(sphere, spheres);
         let at = &mut self.loose_at[sphere];
         match self.loose.get_mut(*at as usize) {
-            Some(own) => *own = traveller,
+            Some(own) => *own = swept,
             None => {
                 *at = self.loose.len() as u32;
-                self.loose.push(traveller);
+                self.loose.push(swept);
             }
         }
     }
@@ -538,7 +542,7 @@ fn pair(a: &SweptSphere, b: &SweptSphere) -> [SphereId; 2] {
 
 /// Returns the slack of a sphere [m].
 #[inline(always)]
-fn most_stray(spheres: &Spheres, sphere: SphereId) -> f32 {
+fn slack_of(spheres: &Spheres, sphere: SphereId) -> f32 {
     SLACK * 2.0 * spheres.list[sphere].radius
 }
 

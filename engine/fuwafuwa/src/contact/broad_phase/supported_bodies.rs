@@ -46,8 +46,8 @@ pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &RigidBodies) -> Vec<Rigid
 
 /// Returns the sleeping pieces in contact with a rigid body, directly or through other sleeping pieces. The
 /// result ascends by body and piece number.
-pub fn leaning_on_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
-    let mut leaning = BTreeSet::new();
+pub fn supported_by_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
+    let mut supported = BTreeSet::new();
     for (slot, body) in bodies.by_slot() {
         let reach = MARGIN * body.grid().voxel_size();
         let is_near = |node: NodeId| {
@@ -56,30 +56,30 @@ pub fn leaning_on_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) -> V
         };
         let nodes = body.mesh().nodes().map(|(node, _)| node);
         let nodes = nodes.filter(|&node| is_near(node));
-        leaning.extend(nodes.map(|node| (slot, body.pieces().of_node(node))));
+        supported.extend(nodes.map(|node| (slot, body.pieces().of_node(node))));
     }
-    Sleepers::of(bodies).with_those_on(leaning)
+    Sleepers::of(bodies).with_those_on(supported)
 }
 
 /// Returns the sleeping pieces in contact with a soft body, directly or through other sleeping pieces. If the
 /// body itself is in `bodies`, this includes its own sleeping pieces. The result ascends by body and piece
 /// number.
-pub fn leaning_on_body<D: Dim>(body: &SoftBody<D>, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
+pub fn supported_by_body<D: Dim>(body: &SoftBody<D>, bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
-    let mut leaning = BTreeSet::new();
+    let mut supported = BTreeSet::new();
     for sphere in spheres_of(BodySlot::NONE, body) {
         let at = sphere.mean::<D>(body.positions());
-        leaning.extend(sleepers.touching(at, sphere.radius));
+        supported.extend(sleepers.touching(at, sphere.radius));
     }
-    sleepers.with_those_on(leaning)
+    sleepers.with_those_on(supported)
 }
 
 /// Returns the sleeping pieces in contact with any of `pieces`, directly or through other sleeping pieces,
 /// except `pieces` themselves. Both lists ascend by body and piece number.
-pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &SoftBodies<D>) -> Vec<Sleeper> {
+pub fn supported_by_pieces<D: Dim>(pieces: &[Sleeper], bodies: &SoftBodies<D>) -> Vec<Sleeper> {
     let sleepers = Sleepers::of(bodies);
     let is_one = |piece: &Sleeper| pieces.binary_search(piece).is_ok();
-    let mut leaning = BTreeSet::new();
+    let mut supported = BTreeSet::new();
     for (slot, body) in bodies.by_slot() {
         if pieces.iter().all(|&(body, _)| body != slot) {
             continue;
@@ -87,13 +87,13 @@ pub fn leaning_on_pieces<D: Dim>(pieces: &[Sleeper], bodies: &SoftBodies<D>) -> 
         let own = spheres_of(slot, body).filter(|own| is_one(&(slot, own.piece)));
         for sphere in own {
             let at = sphere.mean::<D>(body.positions());
-            leaning.extend(sleepers.touching(at, sphere.radius));
+            supported.extend(sleepers.touching(at, sphere.radius));
         }
     }
-    leaning.retain(|piece| !is_one(piece));
-    let mut leaning = sleepers.with_those_on(leaning);
-    leaning.retain(|piece| !is_one(piece));
-    leaning
+    supported.retain(|piece| !is_one(piece));
+    let mut supported = sleepers.with_those_on(supported);
+    supported.retain(|piece| !is_one(piece));
+    supported
 }
 
 /// Contact spheres of all sleeping pieces.

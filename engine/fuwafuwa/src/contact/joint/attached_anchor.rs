@@ -39,7 +39,7 @@ pub struct AnchorState {
     /// Velocity [m/s].
     pub velocity: Vec3,
     /// Inverse effective mass matrix, by rows [1/kg]: velocity change of the anchor per impulse.
-    pub yields: [Vec3; 3],
+    pub inverse_mass: [Vec3; 3],
     pub is_asleep: bool,
 }
 
@@ -75,7 +75,7 @@ impl AttachedAnchor {
 
     /// Moves an anchor on a rigid body or in the world to a world-space point [m]. Does nothing to an anchor
     /// on a soft body.
-    pub fn stand_at(&mut self, at: Vec3, rigids: &RigidBodies) {
+    pub fn move_to(&mut self, at: Vec3, rigids: &RigidBodies) {
         match self {
             Self::Position(place) => *place = at,
             Self::RigidBody(id, own) => {
@@ -88,7 +88,7 @@ impl AttachedAnchor {
     }
 
     /// Returns the present state of the anchor; `None` if its body or all of the attached voxels are gone.
-    pub fn grip<D: Dim>(
+    pub fn state<D: Dim>(
         &self,
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
@@ -97,7 +97,7 @@ impl AttachedAnchor {
             Self::Position(at) => Some(AnchorState {
                 at: *at,
                 velocity: Vec3::ZERO,
-                yields: [Vec3::ZERO; 3],
+                inverse_mass: [Vec3::ZERO; 3],
                 is_asleep: false,
             }),
             Self::RigidBody(id, own) => {
@@ -106,7 +106,7 @@ impl AttachedAnchor {
                 Some(AnchorState {
                     at: rigid.position() + lever,
                     velocity: rigid.velocity_at(lever),
-                    yields: Vec3::AXES.map(|way| rigid.gain(lever, way)),
+                    inverse_mass: Vec3::AXES.map(|way| rigid.velocity_per_impulse(lever, way)),
                     is_asleep: rigid.is_asleep(),
                 })
             }
@@ -117,20 +117,20 @@ impl AttachedAnchor {
                     return None;
                 }
                 let share = 1.0 / nodes.len() as f32;
-                let (mut at, mut velocity, mut gain) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+                let (mut at, mut velocity, mut mean_inverse_mass) = (Vec3::ZERO, Vec3::ZERO, 0.0);
                 let mut is_asleep = true;
                 for node in nodes {
                     at += body.positions()[node].xyz() * share;
                     velocity += body.velocities()[node].xyz() * share;
-                    gain += body.inverse_masses()[node] * share * share;
+                    mean_inverse_mass += body.inverse_masses()[node] * share * share;
                     is_asleep &= body.pieces().sleeps(node);
                 }
-                let mut yields = [Vec3::ZERO; 3];
-                (0..D::N).for_each(|axis| yields[axis][axis] = gain);
+                let mut inverse_mass = [Vec3::ZERO; 3];
+                (0..D::N).for_each(|axis| inverse_mass[axis][axis] = mean_inverse_mass);
                 Some(AnchorState {
                     at,
                     velocity,
-                    yields,
+                    inverse_mass,
                     is_asleep,
                 })
             }
@@ -138,7 +138,7 @@ impl AttachedAnchor {
     }
 
     /// Applies an impulse [N s] to the body at the anchor.
-    pub fn push<D: Dim>(
+    pub fn apply_impulse<D: Dim>(
         &self,
         bodies: &mut SoftBodies<D>,
         rigids: &mut RigidBodies,
@@ -149,7 +149,7 @@ impl AttachedAnchor {
             Self::RigidBody(id, own) => {
                 if let Ok(rigid) = rigids.get_mut(*id) {
                     let lever = rigid.rotation().apply(*own);
-                    rigid.kick(impulse, lever);
+                    rigid.apply_impulse(impulse, lever);
                 }
             }
             Self::Soft(id, corners) => {
@@ -159,8 +159,8 @@ impl AttachedAnchor {
                 let nodes: Vec<NodeId> = nodes(body, corners).collect();
                 let share = Row::from(impulse * (1.0 / nodes.len() as f32));
                 for node in nodes {
-                    let gain = share * body.inverse_masses()[node];
-                    body.velocities_mut()[node] += gain;
+                    let change = share * body.inverse_masses()[node];
+                    body.velocities_mut()[node] += change;
                 }
             }
         }
@@ -191,14 +191,14 @@ impl AttachedAnchor {
             (Self::Soft(own, _), JointEnd::Soft { body, .. }) => own == body,
             _ => false,
         };
-        let is_somewhere = match self {
+        let is_valid = match self {
             Self::Position(at) | Self::RigidBody(_, at) => {
                 let is_near = at.to_array().iter().all(|k| k.abs() <= 4.0 * FARTHEST);
                 is_near && at.to_array()[D::N..].iter().all(|k| *k == 0.0)
             }
             Self::Soft(_, corners) => !corners.is_empty(),
         };
-        is_of_it && is_somewhere
+        is_of_it && is_valid
     }
 }
 

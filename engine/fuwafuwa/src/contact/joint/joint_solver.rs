@@ -15,9 +15,9 @@ use glam::Vec3;
 const WARM_START: f32 = 0.9;
 /// Share of the position error of pins and ropes that is corrected per substep, equal to the share of an
 /// overlap that contacts resolve. Twice this value is unstable.
-const DRAW: f32 = 0.2;
+const CORRECTION_SHARE: f32 = 0.2;
 /// Maximum speed at which a position error is corrected [m/s].
-const DRAW_SPEED: f32 = 2.0;
+const MAX_CORRECTION_SPEED: f32 = 2.0;
 /// Length by which a pin or rope must be stretched to wake a sleeper [m]. Smaller stretches are not visible.
 const WAKE_STRETCH: f32 = 0.002;
 /// Relative change of a spring's force that wakes a sleeper. The force must change by this share plus the
@@ -33,7 +33,7 @@ impl JointState {
         rigids: &mut RigidBodies,
         woken: &mut Woken,
     ) -> bool {
-        let [Some(first), Some(second)] = self.grips(bodies, rigids) else {
+        let [Some(first), Some(second)] = self.anchor_states(bodies, rigids) else {
             return false;
         };
         let is_strained = self.is_strained((first.at - second.at).length());
@@ -50,7 +50,7 @@ impl JointState {
                 }),
             JointKind::Rope { .. } => Vec3::ZERO,
         };
-        self.push(bodies, rigids, self.impulse);
+        self.apply_impulse(bodies, rigids, self.impulse);
         true
     }
 
@@ -68,47 +68,48 @@ impl JointState {
         }
     }
 
-    /// Applies one solver iteration; corrects position errors, too, if `draws` is true.
+    /// Applies one solver iteration; corrects position errors, too, if `corrects` is true.
     pub(super) fn solve<D: Dim>(
         &mut self,
         bodies: &mut SoftBodies<D>,
         rigids: &mut RigidBodies,
         duration: f32,
-        draws: bool,
+        corrects: bool,
     ) {
-        let [Some(first), Some(second)] = self.grips(bodies, rigids) else {
+        let [Some(first), Some(second)] = self.anchor_states(bodies, rigids) else {
             return;
         };
         let apart = first.at - second.at;
         let relative = first.velocity - second.velocity;
-        let yields = [0, 1, 2].map(|row: usize| first.yields[row] + second.yields[row]);
+        let inverse_mass =
+            [0, 1, 2].map(|row: usize| first.inverse_mass[row] + second.inverse_mass[row]);
         let impulse = match self.kind {
             JointKind::Pin => {
-                let draw = if draws {
-                    drawn(apart, duration)
+                let correction = if corrects {
+                    correction_velocity(apart, duration)
                 } else {
                     Vec3::ZERO
                 };
-                solved::<D>(&yields, -(relative + draw))
+                impulse_for::<D>(&inverse_mass, -(relative + correction))
             }
-            // If `draws` is false, this pass removes the velocity of position corrections. Springs make no
+            // If `corrects` is false, this pass removes the velocity of position corrections. Springs make no
             // position corrections.
-            JointKind::Spring { .. } if !draws => Vec3::ZERO,
+            JointKind::Spring { .. } if !corrects => Vec3::ZERO,
             JointKind::Spring {
                 stiffness,
                 damping,
                 length: rest,
             } => {
                 let spring = [stiffness, damping, rest];
-                self.spring(apart, relative, &yields, spring, duration)
+                self.spring(apart, relative, &inverse_mass, spring, duration)
             }
             JointKind::Rope { length } => {
-                self.rope(apart, relative, &yields, length, duration, draws)
+                self.rope(apart, relative, &inverse_mass, length, duration, corrects)
             }
         };
         if impulse.is_finite() {
             self.impulse += impulse;
-            self.push(bodies, rigids, impulse);
+            self.apply_impulse(bodies, rigids, impulse);
         }
     }
 
@@ -122,7 +123,7 @@ impl JointState {
         &self,
         apart: Vec3,
         relative: Vec3,
-        yields: &[Vec3; 3],
+        inverse_mass: &[Vec3; 3],
         [stiffness, damping, rest]: [f32; 3],
         duration: f32,
     ) -> Vec3 {
@@ -131,9 +132,9 @@ impl JointState {
         };
         let softness = 1.0 / (duration * (damping + duration * stiffness));
         let push = (distance - rest) * duration * stiffness * softness;
-        let pulled = softness * self.impulse.dot(way);
-        let under = along(yields, way) + softness;
-        way * (-(relative.dot(way) + push + pulled) / under)
+        let accumulated = softness * self.impulse.dot(way);
+        let under = inverse_mass_along(inverse_mass, way) + softness;
+        way * (-(relative.dot(way) + push + accumulated) / under)
     }
 
     /// Returns the change of the impulse of a rope in one iteration. A rope pulls and never pushes.
@@ -141,59 +142,64 @@ impl JointState {
         &self,
         apart: Vec3,
         relative: Vec3,
-        yields: &[Vec3; 3],
-        most: f32,
+        inverse_mass: &[Vec3; 3],
+        length: f32,
         duration: f32,
-        draws: bool,
+        corrects: bool,
     ) -> Vec3 {
         let Some((distance, way)) = direction(apart) else {
             return Vec3::ZERO;
         };
-        let gain = along(yields, way);
-        if gain <= 0.0 || !draws && distance < most {
+        let along_rope = inverse_mass_along(inverse_mass, way);
+        if along_rope <= 0.0 || !corrects && distance < length {
             return Vec3::ZERO;
         }
-        let beyond = distance - most;
-        let wanted = match (draws, beyond > 0.0) {
+        let beyond = distance - length;
+        let wanted = match (corrects, beyond > 0.0) {
             (false, _) => 0.0,
-            (true, true) => -(DRAW * beyond / duration).min(DRAW_SPEED),
+            (true, true) => -(CORRECTION_SHARE * beyond / duration).min(MAX_CORRECTION_SPEED),
             (true, false) => -beyond / duration,
         };
-        let pulled = self.impulse.dot(way);
-        let change = (wanted - relative.dot(way)) / gain;
-        way * ((pulled + change).min(0.0) - pulled)
+        let accumulated = self.impulse.dot(way);
+        let change = (wanted - relative.dot(way)) / along_rope;
+        way * ((accumulated + change).min(0.0) - accumulated)
     }
 
     /// Returns whether at least one of the two anchors can move.
-    pub(super) fn yields<D: Dim>(&self, bodies: &SoftBodies<D>, rigids: &RigidBodies) -> bool {
-        let grips = self.grips(bodies, rigids).into_iter().flatten();
-        let mut ways = grips.flat_map(|grip| grip.yields);
-        ways.any(|way| way != Vec3::ZERO)
+    pub(super) fn can_move<D: Dim>(&self, bodies: &SoftBodies<D>, rigids: &RigidBodies) -> bool {
+        let anchors = self.anchor_states(bodies, rigids).into_iter().flatten();
+        let mut rows = anchors.flat_map(|anchor| anchor.inverse_mass);
+        rows.any(|row| row != Vec3::ZERO)
     }
 
-    fn grips<D: Dim>(
+    fn anchor_states<D: Dim>(
         &self,
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
     ) -> [Option<AnchorState>; 2] {
         self.attached
             .each_ref()
-            .map(|anchor| anchor.grip(bodies, rigids))
+            .map(|anchor| anchor.state(bodies, rigids))
     }
 
-    fn push<D: Dim>(&self, bodies: &mut SoftBodies<D>, rigids: &mut RigidBodies, impulse: Vec3) {
-        self.attached[0].push(bodies, rigids, impulse);
-        self.attached[1].push(bodies, rigids, -impulse);
+    fn apply_impulse<D: Dim>(
+        &self,
+        bodies: &mut SoftBodies<D>,
+        rigids: &mut RigidBodies,
+        impulse: Vec3,
+    ) {
+        self.attached[0].apply_impulse(bodies, rigids, impulse);
+        self.attached[1].apply_impulse(bodies, rigids, -impulse);
     }
 }
 
 /// Returns the velocity at which a pin corrects the position error `apart` [m/s].
-fn drawn(apart: Vec3, duration: f32) -> Vec3 {
-    let draw = apart * (DRAW / duration);
-    let speed = draw.length();
-    match speed > DRAW_SPEED {
-        true => draw * (DRAW_SPEED / speed),
-        false => draw,
+fn correction_velocity(apart: Vec3, duration: f32) -> Vec3 {
+    let correction = apart * (CORRECTION_SHARE / duration);
+    let speed = correction.length();
+    match speed > MAX_CORRECTION_SPEED {
+        true => correction * (MAX_CORRECTION_SPEED / speed),
+        false => correction,
     }
 }
 
@@ -204,14 +210,14 @@ fn direction(apart: Vec3) -> Option<(f32, Vec3)> {
 }
 
 /// Returns the inverse effective mass along a unit direction [1/kg].
-fn along(yields: &[Vec3; 3], way: Vec3) -> f32 {
-    way.dot(yields.map(|row| row.dot(way)).into())
+fn inverse_mass_along(inverse_mass: &[Vec3; 3], way: Vec3) -> f32 {
+    way.dot(inverse_mass.map(|row| row.dot(way)).into())
 }
 
 /// Returns the impulse [N s] that changes the relative velocity of the anchors by `velocity` [m/s]; 0 if
 /// neither anchor can move.
-fn solved<D: Dim>(yields: &[Vec3; 3], velocity: Vec3) -> Vec3 {
-    let [x, y, mut z] = *yields;
+fn impulse_for<D: Dim>(inverse_mass: &[Vec3; 3], velocity: Vec3) -> Vec3 {
+    let [x, y, mut z] = *inverse_mass;
     // In 2D the third row of the matrix is 0; a unit row makes the matrix invertible.
     if D::N == 2 {
         z = Vec3::Z;

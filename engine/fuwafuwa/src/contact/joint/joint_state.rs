@@ -14,7 +14,7 @@ use glam::Vec3;
 
 /// Solver iterations over all joints per substep. Chains of joints need more than one iteration, because
 /// their links depend on each other.
-const ROUNDS: usize = 4;
+const ITERATIONS: usize = 4;
 
 /// Joints of a world.
 pub type Joints = Arena<JointHandle, JointState>;
@@ -98,7 +98,7 @@ impl JointState {
     }
 
     /// Attaches the anchors to their bodies at the present positions.
-    pub(crate) fn hold<D: Dim>(
+    pub(crate) fn attach<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
@@ -107,7 +107,7 @@ impl JointState {
             *anchor = AttachedAnchor::of(end, bodies, rigids)?;
         }
         if self.kind == JointKind::Pin {
-            self.meet_soft_ends(bodies, rigids);
+            self.move_to_soft_anchor(bodies, rigids);
         }
         (self.impulse, self.force) = (Vec3::ZERO, 0.0);
         Ok(())
@@ -115,25 +115,27 @@ impl JointState {
 
     /// For a pin between a soft body and a rigid body or the world: moves the anchor that is not on the soft
     /// body to the other anchor. So nothing jumps at the first step.
-    fn meet_soft_ends<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
+    fn move_to_soft_anchor<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies) {
         let is_soft = self.attached.each_ref().map(AttachedAnchor::is_soft);
         for (own, other) in [(0, 1), (1, 0)] {
             if is_soft[own] && !is_soft[other] {
-                let at = self.attached[own].grip(bodies, rigids).map(|grip| grip.at);
+                let at = self.attached[own]
+                    .state(bodies, rigids)
+                    .map(|state| state.at);
                 at.into_iter()
-                    .for_each(|at| self.attached[other].stand_at(at, rigids));
+                    .for_each(|at| self.attached[other].move_to(at, rigids));
             }
         }
     }
 
     /// Returns the positions of both anchors [m]; `None` if an attached body is gone.
-    pub(crate) fn places<D: Dim>(
+    pub(crate) fn anchor_positions<D: Dim>(
         &self,
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
     ) -> Option<[Vec3; 2]> {
         let [first, second] = &self.attached;
-        let at = |anchor: &AttachedAnchor| Some(anchor.grip(bodies, rigids)?.at);
+        let at = |anchor: &AttachedAnchor| Some(anchor.state(bodies, rigids)?.at);
         Some([at(first)?, at(second)?])
     }
 
@@ -222,7 +224,7 @@ pub(crate) fn solve<D: Dim>(
             false => broken.push(id),
         }
     }
-    for _ in 0..ROUNDS {
+    for _ in 0..ITERATIONS {
         for joint in joints.iter_mut() {
             joint.solve(bodies, rigids, duration, true);
         }
@@ -239,13 +241,13 @@ pub(crate) fn relax<D: Dim>(
     duration: f32,
 ) -> Vec<JointHandle> {
     let mut broken = Vec::new();
-    for _ in 0..ROUNDS {
+    for _ in 0..ITERATIONS {
         for joint in joints.iter_mut() {
             joint.solve(bodies, rigids, duration, false);
         }
     }
     for (id, joint) in joints.entries_mut() {
-        if !joint.yields(bodies, rigids) {
+        if !joint.can_move(bodies, rigids) {
             // Keeps the last force of a joint if none of its attached bodies can move.
             continue;
         }

@@ -30,7 +30,7 @@ pub struct Contact {
     /// value allows an approach.
     pub min_normal_velocity: f32,
     /// Effective mass along the normal [kg].
-    pub inertia: f32,
+    pub effective_mass: f32,
     /// Coulomb friction coefficient.
     pub friction: f32,
     /// Accumulated impulse along the normal in this substep [N s], at least 0.
@@ -43,7 +43,7 @@ pub struct Contact {
 
 impl Contact {
     #[inline(always)]
-    pub fn new(normal: Row, gap: f32, duration: f32, inertia: f32, friction: f32) -> Self {
+    pub fn new(normal: Row, gap: f32, duration: f32, effective_mass: f32, friction: f32) -> Self {
         let least = if gap > 0.0 {
             -gap / duration
         } else {
@@ -53,7 +53,7 @@ impl Contact {
             normal,
             gap,
             min_normal_velocity: least,
-            inertia,
+            effective_mass,
             friction,
             normal_impulse: 0.0,
             friction_impulse: Row::ZERO,
@@ -64,13 +64,13 @@ impl Contact {
     /// Returns the contact with the index of its pair in the broad phase and with a warm start from the
     /// impulse of that pair.
     #[inline(always)]
-    pub fn known_as<D: Dim>(mut self, pair: usize, impulse: &Impulse) -> Self {
+    pub fn with_warm_start<D: Dim>(mut self, pair: usize, impulse: &Impulse) -> Self {
         self.pair = pair as u32;
-        if impulse.pressed > 0.0 {
-            self.normal_impulse = WARM_START * impulse.pressed;
-            let along = inner::<D>(impulse.dragged, self.normal);
-            let dragged = impulse.dragged - self.normal * along;
-            self.friction_impulse = dragged * WARM_START;
+        if impulse.normal_impulse > 0.0 {
+            self.normal_impulse = WARM_START * impulse.normal_impulse;
+            let along = inner::<D>(impulse.friction_impulse, self.normal);
+            let friction_impulse = impulse.friction_impulse - self.normal * along;
+            self.friction_impulse = friction_impulse * WARM_START;
         }
         self
     }
@@ -91,26 +91,30 @@ impl Contact {
     /// [m/s].
     #[inline(always)]
     pub fn solve<D: Dim>(&mut self, relative: Row) -> Row {
-        self.solve_across::<D>(relative, self.inertia)
+        self.solve_with_tangent_mass::<D>(relative, self.effective_mass)
     }
 
-    /// Like [`Contact::solve`], with a separate tangential effective mass `across` [kg] for sides that
+    /// Like [`Contact::solve`], with a separate tangential effective mass `tangent_mass` [kg] for sides that
     /// rotate.
     #[inline(always)]
-    pub fn solve_across<D: Dim>(&mut self, relative: Row, across: f32) -> Row {
+    pub fn solve_with_tangent_mass<D: Dim>(&mut self, relative: Row, tangent_mass: f32) -> Row {
         let approach = inner::<D>(relative, self.normal);
-        let pressed =
-            (self.normal_impulse + (self.min_normal_velocity - approach) * self.inertia).max(0.0);
+        let normal_impulse = (self.normal_impulse
+            + (self.min_normal_velocity - approach) * self.effective_mass)
+            .max(0.0);
         let slip = relative - self.normal * approach;
-        let mut dragged = self.friction_impulse - slip * across;
-        let (held, wanted) = (self.friction * pressed, inner::<D>(dragged, dragged));
+        let mut friction_impulse = self.friction_impulse - slip * tangent_mass;
+        let (held, wanted) = (
+            self.friction * normal_impulse,
+            inner::<D>(friction_impulse, friction_impulse),
+        );
         if wanted > held * held {
-            dragged *= held / wanted.sqrt();
+            friction_impulse *= held / wanted.sqrt();
         }
-        let press = self.normal * (pressed - self.normal_impulse);
-        let change = press + (dragged - self.friction_impulse);
-        self.normal_impulse = pressed;
-        self.friction_impulse = dragged;
+        let change_along = self.normal * (normal_impulse - self.normal_impulse);
+        let change = change_along + (friction_impulse - self.friction_impulse);
+        self.normal_impulse = normal_impulse;
+        self.friction_impulse = friction_impulse;
         change
     }
 
@@ -119,9 +123,9 @@ impl Contact {
     #[inline(always)]
     pub fn relax<D: Dim>(&mut self, relative: Row) -> Row {
         let approach = inner::<D>(relative, self.normal);
-        let pressed = (self.normal_impulse - approach * self.inertia).max(0.0);
-        let change = self.normal * (pressed - self.normal_impulse);
-        self.normal_impulse = pressed;
+        let normal_impulse = (self.normal_impulse - approach * self.effective_mass).max(0.0);
+        let change = self.normal * (normal_impulse - self.normal_impulse);
+        self.normal_impulse = normal_impulse;
         change
     }
 
@@ -133,17 +137,17 @@ impl Contact {
 impl Impulse {
     /// Clears the impulses after the two sides have separated.
     #[inline(always)]
-    pub fn release(&mut self) {
+    pub fn clear(&mut self) {
         // Writes only if there is an impulse to clear: most pairs never touched. Without a normal impulse
         // there is no friction impulse.
-        if self.pressed > 0.0 {
-            (self.pressed, self.dragged) = (0.0, Row::ZERO);
+        if self.normal_impulse > 0.0 {
+            (self.normal_impulse, self.friction_impulse) = (0.0, Row::ZERO);
         }
     }
 
-    pub fn note(&mut self, contact: &Contact) {
-        self.pressed = contact.normal_impulse;
-        self.dragged = contact.friction_impulse;
+    pub fn store(&mut self, contact: &Contact) {
+        self.normal_impulse = contact.normal_impulse;
+        self.friction_impulse = contact.friction_impulse;
         self.total += contact.normal_impulse;
     }
 }

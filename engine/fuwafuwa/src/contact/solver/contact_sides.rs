@@ -23,7 +23,7 @@ pub struct NodeContact {
 #[derive(Copy, Clone, Debug)]
 pub struct SphereContact {
     pub contact: Contact,
-    pub grips: [SphereNodeRows; 2],
+    pub node_rows: [SphereNodeRows; 2],
 }
 
 /// Velocity rows of a sphere's corner nodes; in 2D only the first four are used.
@@ -31,14 +31,14 @@ pub type SphereNodeRows = [NodeRow; 8];
 
 /// Contact point between a dynamic and any other rigid body.
 #[derive(Copy, Clone, Debug)]
-pub struct FreeContact {
+pub struct DynamicContact {
     pub contact: Contact,
     /// Slots of the dynamic body and of the body that it touches.
     pub both: [RigidSlot; 2],
     /// Lever arms from the position of each body to the contact point [m].
     pub levers: [Vec3; 2],
     /// Tangential effective mass [kg]: at most that of any tangent direction.
-    pub across: f32,
+    pub tangent_mass: f32,
     /// Position of the point [m].
     pub at: Vec3,
     /// Approach speed at the point [m/s].
@@ -51,7 +51,7 @@ pub struct FreeContact {
 
 /// Contact of a kinematic or coupled rigid body with a fixed, kinematic or coupled one.
 #[derive(Copy, Clone, Debug)]
-pub struct HandContact {
+pub struct KinematicContact {
     pub contact: Contact,
     /// Slots of the kinematic or coupled body and of the body that it touches.
     pub both: [RigidSlot; 2],

@@ -3,7 +3,7 @@
 
 use super::contact_row::PUSH_OUT_SPEED;
 use super::contact_sides::SphereNodeRows;
-use super::solver_velocities::Motion;
+use super::solver_velocities::SolverVelocities;
 use crate::contact::broad_phase::{EmbeddedSphere, Spheres};
 use crate::foundation::dim::{Dim, inner};
 use crate::soft_body::SoftBodies;
@@ -12,9 +12,9 @@ use crate::soft_body::element_forces::Row;
 /// Embedded sphere and its exit in one substep.
 #[derive(Copy, Clone, Debug)]
 pub struct EscapeContact {
-    grips: [SphereNodeRows; 2],
+    node_rows: [SphereNodeRows; 2],
     /// Effective mass of the embedded sphere and its exit [kg].
-    inertia: f32,
+    effective_mass: f32,
     /// Target velocity of the embedded sphere relative to its exit [m/s].
     velocity: Row,
 }
@@ -23,13 +23,13 @@ impl EscapeContact {
     /// Returns the escape contact that moves an embedded sphere to the front of its exit. Returns `None` if
     /// neither sphere can move, or if a position or velocity is not finite or too large.
     pub fn new<D: Dim>(
-        captive: &EmbeddedSphere,
+        embedded: &EmbeddedSphere,
         bodies: &SoftBodies<D>,
         spheres: &Spheres,
-        motion: &mut Motion,
+        velocities: &mut SolverVelocities,
         duration: f32,
     ) -> Option<Self> {
-        let [a, b] = [captive.sphere, captive.exit];
+        let [a, b] = [embedded.sphere, embedded.exit];
         let both = [&spheres.list[a], &spheres.list[b]];
         // Length of a vector, at least 1e-9, because the code below divides by it.
         let length_of = |way: Row| inner::<D>(way, way).sqrt().max(1e-9);
@@ -47,24 +47,24 @@ impl EscapeContact {
         let squared = |row: Row| inner::<D>(row, row);
         let is_way = squared(way) < f32::INFINITY && squared(relative) < most * most;
         (is_way && inverse_mass > 0.0).then(|| Self {
-            grips: both.map(|sphere| motion.grip::<D>(sphere)),
-            inertia: 1.0 / inverse_mass,
+            node_rows: both.map(|sphere| velocities.sphere_rows::<D>(sphere)),
+            effective_mass: 1.0 / inverse_mass,
             velocity: way * (speed / length_of(way)),
         })
     }
 
     /// Gives the embedded sphere its escape velocity relative to the exit.
-    pub fn solve<D: Dim>(&self, motion: &mut Motion) {
-        self.push::<D>(self.velocity, motion);
+    pub fn solve<D: Dim>(&self, velocities: &mut SolverVelocities) {
+        self.push::<D>(self.velocity, velocities);
     }
 
     /// After the position update, stops the embedded sphere relative to its exit.
-    pub fn relax<D: Dim>(&self, motion: &mut Motion) {
-        self.push::<D>(Row::ZERO, motion);
+    pub fn relax<D: Dim>(&self, velocities: &mut SolverVelocities) {
+        self.push::<D>(Row::ZERO, velocities);
     }
 
-    fn push<D: Dim>(&self, velocity: Row, motion: &mut Motion) {
-        let change = velocity - motion.between::<D>(&self.grips);
-        motion.push_spheres::<D>(&self.grips, change * self.inertia);
+    fn push<D: Dim>(&self, velocity: Row, velocities: &mut SolverVelocities) {
+        let change = velocity - velocities.relative_of_spheres::<D>(&self.node_rows);
+        velocities.apply_to_spheres::<D>(&self.node_rows, change * self.effective_mass);
     }
 }

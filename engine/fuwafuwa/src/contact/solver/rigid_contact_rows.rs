@@ -2,8 +2,10 @@
 //! contacts, of kinematic or coupled bodies with each other or with fixed bodies, have one point.
 
 use super::contact_row::{AHEAD, CLOSE, Contact, is_close};
-use super::contact_sides::{FreeContact, HandContact};
-use crate::contact::broad_phase::{Impulse, Passed, RigidTouch, RigidTouches, WAKE_SPEED};
+use super::contact_sides::{DynamicContact, KinematicContact};
+use crate::contact::broad_phase::{
+    Impulse, PressedContact, RigidContactPoint, RigidContactPoints, WAKE_SPEED,
+};
 use crate::foundation::arena::RigidSlot;
 use crate::foundation::dim::{Dim, inner};
 use crate::math::vector::perpendiculars;
@@ -17,7 +19,7 @@ const BOUNCE_SPEED: f32 = 0.5;
 
 /// Finds the contacts of kinematic and coupled bodies with fixed bodies and with each other. Replaces the
 /// contents of `found`.
-pub fn find_hands(rigids: &RigidBodies, duration: f32, found: &mut Vec<HandContact>) {
+pub fn find_kinematic(rigids: &RigidBodies, duration: f32, found: &mut Vec<KinematicContact>) {
     found.clear();
     let hands = rigids
         .by_slot()
@@ -41,9 +43,9 @@ pub fn find_hands(rigids: &RigidBodies, duration: f32, found: &mut Vec<HandConta
                 true => 0.5 * (hand.friction + rigid.friction),
                 false => hand.friction,
             };
-            let (normal, inertia) = (Row::from(normal), 1.0 / inverse_mass);
-            found.push(HandContact {
-                contact: Contact::new(normal, gap, duration, inertia, friction),
+            let (normal, effective_mass) = (Row::from(normal), 1.0 / inverse_mass);
+            found.push(KinematicContact {
+                contact: Contact::new(normal, gap, duration, effective_mass, friction),
                 both: [own, other],
             });
         }
@@ -52,11 +54,11 @@ pub fn find_hands(rigids: &RigidBodies, duration: f32, found: &mut Vec<HandConta
 
 /// Finds the contacts of dynamic bodies with all rigid bodies, and replaces the contents of `found`. Returns
 /// the sleepers that must wake, possibly repeated.
-pub fn find_free<D: Dim>(
+pub fn find_dynamic<D: Dim>(
     rigids: &RigidBodies,
-    known: &RigidTouches,
+    known: &RigidContactPoints,
     duration: f32,
-    found: &mut Vec<FreeContact>,
+    found: &mut Vec<DynamicContact>,
 ) -> Vec<RigidSlot> {
     found.clear();
     let mut hits = Vec::new();
@@ -80,7 +82,7 @@ pub fn find_free<D: Dim>(
                 continue;
             }
             let both = [own, other];
-            let margin = margin(rigid, duration) + margin_of_other(against, duration);
+            let margin = margin(rigid, duration) + motion_margin(against, duration);
             touch::<D>(
                 both,
                 [rigid, against],
@@ -98,10 +100,10 @@ pub fn find_free<D: Dim>(
 /// Returns the distance from a rigid body within which a contact with a body at rest may become active in
 /// this substep [m].
 fn margin(rigid: &RigidState, duration: f32) -> f32 {
-    CLOSE * rigid.shape().inradius().min(1.0) + margin_of_other(rigid, duration)
+    CLOSE * rigid.shape().inradius().min(1.0) + motion_margin(rigid, duration)
 }
 
-fn margin_of_other(rigid: &RigidState, duration: f32) -> f32 {
+fn motion_margin(rigid: &RigidState, duration: f32) -> f32 {
     AHEAD * duration * rigid.top_speed()
 }
 
@@ -111,9 +113,9 @@ fn touch<D: Dim>(
     slots: [RigidSlot; 2],
     both: [&RigidState; 2],
     margin: f32,
-    known: &RigidTouches,
+    known: &RigidContactPoints,
     duration: f32,
-    found: &mut Vec<FreeContact>,
+    found: &mut Vec<DynamicContact>,
     hits: &mut Vec<RigidSlot>,
 ) {
     let manifold = both[0].shape().manifold(both[1].shape(), margin);
@@ -137,29 +139,36 @@ fn touch<D: Dim>(
             let sleepers = [0, 1].into_iter().filter(|&k: &usize| both[k].is_asleep());
             hits.extend(sleepers.map(|k| slots[k]));
         }
-        let yields = |way: Vec3| {
-            let each = [0, 1].map(|k: usize| both[k].yields(levers[k], way));
+        let inverse_mass = |way: Vec3| {
+            let each = [0, 1].map(|k: usize| both[k].inverse_effective_mass(levers[k], way));
             each[0] + each[1]
         };
-        let along = yields(manifold.normal);
-        if along <= 0.0 {
+        let normal_inverse_mass = inverse_mass(manifold.normal);
+        if normal_inverse_mass <= 0.0 {
             continue;
         }
         let tangents = tangents::<D>(manifold.normal);
-        let across: f32 = tangents[..D::N - 1].iter().copied().map(yields).sum();
+        let tangent_inverse_mass: f32 =
+            tangents[..D::N - 1].iter().copied().map(inverse_mass).sum();
         let impulse = known.known(slots, point.key);
-        let mut contact = Contact::new(normal, point.gap, duration, 1.0 / along, friction);
-        contact = contact.known_as::<D>(0, &impulse);
-        let is_new = impulse.pressed == 0.0 && approach < -BOUNCE_SPEED;
+        let mut contact = Contact::new(
+            normal,
+            point.gap,
+            duration,
+            1.0 / normal_inverse_mass,
+            friction,
+        );
+        contact = contact.with_warm_start::<D>(0, &impulse);
+        let is_new = impulse.normal_impulse == 0.0 && approach < -BOUNCE_SPEED;
         let bounce = if is_new { -restitution * approach } else { 0.0 };
         if bounce > 0.0 {
             contact.min_normal_velocity = contact.min_normal_velocity.max(bounce);
         }
-        found.push(FreeContact {
+        found.push(DynamicContact {
             contact,
             both: slots,
             levers,
-            across: 1.0 / across,
+            tangent_mass: 1.0 / tangent_inverse_mass,
             at: point.at,
             speed: -approach,
             bounce,
@@ -176,12 +185,12 @@ fn tangents<D: Dim>(normal: Vec3) -> [Vec3; 2] {
     perpendiculars(normal)
 }
 
-impl FreeContact {
+impl DynamicContact {
     /// Returns the impulse at the contact point, to be stored for the warm start in the next substep.
-    pub fn touch(&self) -> RigidTouch {
+    pub fn touch(&self) -> RigidContactPoint {
         let mut impulse = Impulse::default();
-        impulse.note(&self.contact);
-        RigidTouch {
+        impulse.store(&self.contact);
+        RigidContactPoint {
             both: self.both,
             key: self.key,
             impulse,
@@ -189,15 +198,15 @@ impl FreeContact {
     }
 
     /// Returns the contact for the events of the tick; `None` if it did not press in this substep.
-    pub fn passed(&self) -> Option<Passed> {
-        let passed = Passed {
+    pub fn pressed(&self) -> Option<PressedContact> {
+        let pressed = PressedContact {
             both: self.both,
             impulse: self.contact.normal_impulse,
             speed: self.speed,
             at: self.at,
             normal: self.contact.normal.xyz(),
         };
-        (passed.impulse > 0.0).then_some(passed)
+        (pressed.impulse > 0.0).then_some(pressed)
     }
 
     /// Applies the warm-start impulse.
@@ -207,7 +216,9 @@ impl FreeContact {
 
     pub fn solve<D: Dim>(&mut self, rigids: &mut RigidBodies, duration: f32) {
         let relative = self.relative(rigids);
-        let change = self.contact.solve_across::<D>(relative, self.across);
+        let change = self
+            .contact
+            .solve_with_tangent_mass::<D>(relative, self.tangent_mass);
         self.push(rigids, change, duration);
     }
 
@@ -233,10 +244,10 @@ impl FreeContact {
         let impulse = impulse.xyz();
         rigids
             .at_mut(self.both[0])
-            .push_at(impulse, self.levers[0], duration);
+            .apply_contact_impulse_at(impulse, self.levers[0], duration);
         let back = -impulse;
         rigids
             .at_mut(self.both[1])
-            .push_at(back, self.levers[1], duration);
+            .apply_contact_impulse_at(back, self.levers[1], duration);
     }
 }

@@ -10,14 +10,14 @@ use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
 use glam::Vec3;
 
-/// Number of nodes in a chunk of `Motion`. A chunk with any node in contact is copied as a whole. Larger
-/// chunks copy more unused nodes; smaller ones cost more tests.
-const STRETCH: usize = 16;
+/// Number of nodes in a chunk of `SolverVelocities`. A chunk with any node in contact is copied as a whole.
+/// Larger chunks copy more unused nodes; smaller ones cost more tests.
+const NODES_PER_CHUNK: usize = 16;
 
 /// Copy of the velocities of nodes in contact [m/s]. The fourth component is the inverse mass [1/kg], so that
 /// applying an impulse reads one row.
 #[derive(Clone, Debug, Default)]
-pub struct Motion {
+pub struct SolverVelocities {
     /// Velocity and inverse mass of each node. Valid only in chunks with a node in contact.
     rows: IndexVec<NodeRow, Row>,
     /// Row of the first node of each body, always at the start of a chunk.
@@ -27,7 +27,7 @@ pub struct Motion {
     is_touched: Vec<bool>,
 }
 
-impl Motion {
+impl SolverVelocities {
     /// Prepares one row for each node and marks all nodes as without contact.
     pub fn clear<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         self.first.clear();
@@ -35,42 +35,42 @@ impl Motion {
         for body in bodies.slots() {
             self.first.push(NodeRow::of(count));
             let nodes = body.map_or(0, |body| body.velocities().len());
-            count += nodes.next_multiple_of(STRETCH);
+            count += nodes.next_multiple_of(NODES_PER_CHUNK);
         }
         self.rows.resize(count, Row::ZERO);
         self.is_touched.clear();
-        self.is_touched.resize(count / STRETCH, false);
+        self.is_touched.resize(count / NODES_PER_CHUNK, false);
     }
 
     /// Returns the row of a node and marks it as in contact.
     #[inline(always)]
     pub fn row(&mut self, body: BodySlot, node: NodeId) -> NodeRow {
         let row = row_of(self.first[body], node);
-        self.is_touched[row.index() / STRETCH] = true;
+        self.is_touched[row.index() / NODES_PER_CHUNK] = true;
         row
     }
 
     /// Returns the rows of a sphere's corner nodes and marks them as in contact.
     #[inline(always)]
-    pub fn grip<D: Dim>(&mut self, sphere: &ContactSphere) -> SphereNodeRows {
+    pub fn sphere_rows<D: Dim>(&mut self, sphere: &ContactSphere) -> SphereNodeRows {
         let first = self.first[sphere.body];
-        let grip = sphere.nodes.map(|node| row_of(first, node));
-        for row in &grip[..D::CORNERS] {
-            self.is_touched[row.index() / STRETCH] = true;
+        let rows = sphere.nodes.map(|node| row_of(first, node));
+        for row in &rows[..D::CORNERS] {
+            self.is_touched[row.index() / NODES_PER_CHUNK] = true;
         }
-        grip
+        rows
     }
 
     /// Copies the velocities of nodes in contact from the bodies.
     pub fn load<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
         for (slot, body) in bodies.by_slot() {
             let first = self.first[slot].index();
-            let nodes = body.velocities().chunks(STRETCH);
-            let nodes = nodes.zip(body.inverse_masses().chunks(STRETCH));
+            let nodes = body.velocities().chunks(NODES_PER_CHUNK);
+            let nodes = nodes.zip(body.inverse_masses().chunks(NODES_PER_CHUNK));
             let own = self.rows.as_mut_slice()[first..]
-                .chunks_mut(STRETCH)
+                .chunks_mut(NODES_PER_CHUNK)
                 .zip(nodes);
-            let touched = &self.is_touched[first / STRETCH..];
+            let touched = &self.is_touched[first / NODES_PER_CHUNK..];
             for ((rows, (velocities, inverse_mass)), _) in own.zip(touched).filter(|(_, is)| **is) {
                 for (row, (velocity, &inverse_mass)) in
                     rows.iter_mut().zip(velocities.iter().zip(inverse_mass))
@@ -85,9 +85,9 @@ impl Motion {
     pub fn store<D: Dim>(&self, bodies: &mut SoftBodies<D>) {
         for (slot, body) in bodies.by_slot_mut() {
             let first = self.first[slot].index();
-            let rows = self.rows.as_slice()[first..].chunks(STRETCH);
-            let own = rows.zip(body.velocities_mut().chunks_mut(STRETCH));
-            let touched = &self.is_touched[first / STRETCH..];
+            let rows = self.rows.as_slice()[first..].chunks(NODES_PER_CHUNK);
+            let own = rows.zip(body.velocities_mut().chunks_mut(NODES_PER_CHUNK));
+            let touched = &self.is_touched[first / NODES_PER_CHUNK..];
             for ((rows, velocities), _) in own.zip(touched).filter(|(_, is)| **is) {
                 for (row, velocity) in rows.iter().zip(velocities) {
                     *velocity = with_fourth(*row, 0.0);
@@ -98,17 +98,19 @@ impl Motion {
 
     /// Returns the velocity of the first sphere relative to the second [m/s].
     #[inline(always)]
-    pub fn between<D: Dim>(&self, grips: &[SphereNodeRows; 2]) -> Row {
-        let [first, second] = grips.each_ref().map(|grip| mean::<D, _>(&self.rows, grip));
+    pub fn relative_of_spheres<D: Dim>(&self, spheres: &[SphereNodeRows; 2]) -> Row {
+        let [first, second] = spheres
+            .each_ref()
+            .map(|rows| mean::<D, _>(&self.rows, rows));
         with_fourth(first - second, 0.0)
     }
 
     /// Applies an impulse to the first sphere and its opposite to the second.
     #[inline(always)]
-    pub fn push_spheres<D: Dim>(&mut self, grips: &[SphereNodeRows; 2], impulse: Row) {
+    pub fn apply_to_spheres<D: Dim>(&mut self, spheres: &[SphereNodeRows; 2], impulse: Row) {
         let share = impulse * (1.0 / D::CORNERS as f32);
-        for (grip, share) in [(&grips[0], share), (&grips[1], -share)] {
-            for &node in &grip[..D::CORNERS] {
+        for (rows, share) in [(&spheres[0], share), (&spheres[1], -share)] {
+            for &node in &rows[..D::CORNERS] {
                 let row = &mut self.rows[node];
                 *row += share * row[3];
             }
@@ -117,7 +119,7 @@ impl Motion {
 
     /// Returns the velocity of a node relative to the rigid body that it touches [m/s].
     #[inline(always)]
-    pub fn of_node(&self, row: &NodeContact, rigids: &RigidBodies) -> Row {
+    pub fn relative_of_node(&self, row: &NodeContact, rigids: &RigidBodies) -> Row {
         let own = self.rows[row.node];
         let other = row.mover.map_or(Row::ZERO, |mover| velocity(mover, rigids));
         with_fourth(own - other, 0.0)
@@ -125,7 +127,7 @@ impl Motion {
 
     /// Applies an impulse to a node and its opposite to a moving rigid body.
     #[inline(always)]
-    pub fn push_node(
+    pub fn apply_to_node(
         &mut self,
         row: &NodeContact,
         rigids: &mut RigidBodies,
@@ -151,7 +153,9 @@ fn velocity((mover, lever): (RigidSlot, Vec3), rigids: &RigidBodies) -> Row {
 /// rare.
 #[inline(never)]
 fn push((mover, lever): (RigidSlot, Vec3), rigids: &mut RigidBodies, impulse: Row, duration: f32) {
-    rigids.at_mut(mover).push_at(impulse.xyz(), lever, duration);
+    rigids
+        .at_mut(mover)
+        .apply_contact_impulse_at(impulse.xyz(), lever, duration);
 }
 
 /// Returns the row of a node of a body, given the row of the first node.

@@ -1,9 +1,9 @@
 //! Follows a cutting edge through bodies: the rest position of each sample, and the area that the samples
 //! sweep.
 
-use super::edge_sample::{MOST_SAMPLES, Near, Sample};
+use super::edge_sample::{MAX_SAMPLES, Near, Sample};
 use super::knife_state::{EdgePose, KnifeState};
-use super::material_point::{self, Spot};
+use super::material_point::{self, MaterialPoint};
 use super::swept_area::{self, Faces, RestPosition};
 use crate::foundation::arena::SoftBodyHandle;
 use crate::foundation::dim::{Dim, Point};
@@ -19,11 +19,11 @@ const SAMPLES_PER_VOXEL: f32 = 2.0;
 /// rest length.
 const STRETCH: f32 = 1.5;
 /// Factor in the limit of a sample's movement in rest coordinates between two sweeps. The limit is
-/// `MOST_STRETCH` times the movement in world space, plus `MOST_JUMP` voxels. A sample that moved farther has
+/// `MAX_STRETCH` times the movement in world space, plus `MAX_JUMP` voxels. A sample that moved farther has
 /// entered other tissue, so it cuts nothing in this sweep. The factor is twice [`STRETCH`].
-const MOST_STRETCH: f64 = 3.0;
-/// Constant term in the limit of a sample's movement in rest coordinates [voxels], see [`MOST_STRETCH`].
-const MOST_JUMP: f64 = 2.0;
+const MAX_STRETCH: f64 = 3.0;
+/// Constant term in the limit of a sample's movement in rest coordinates [voxels], see [`MAX_STRETCH`].
+const MAX_JUMP: f64 = 2.0;
 
 /// Cut that an edge has made in one body since the last sweep.
 pub struct Cut {
@@ -44,39 +44,39 @@ impl KnifeState {
         holder: &RigidState,
         ahead: f32,
     ) {
-        let stance = self.stance::<D>(holder);
-        self.take_samples(&stance, bodies);
+        let pose = self.edge_pose::<D>(holder);
+        self.update_sample_count(&pose, bodies);
         if !self.knows_near {
-            self.look_around(&stance, bodies, holder, ahead);
+            self.find_near_elements(&pose, bodies, holder, ahead);
         }
         for place in 0..self.samples.len() {
-            let at = self.place(&stance, place);
+            let at = self.place(&pose, place);
             self.samples[place].inside = self.find(bodies, place, at);
         }
     }
 
     /// Ends a sweep: returns the cuts that the edge made in the last `since` seconds, one for each body that
     /// the edge is in or has just left.
-    pub(crate) fn pass<D: Dim>(
+    pub(crate) fn end_sweep<D: Dim>(
         &mut self,
         bodies: &SoftBodies<D>,
         holder: &RigidState,
         since: f32,
     ) -> Vec<Cut> {
-        let stance = self.stance::<D>(holder);
-        let spots = self.samples.iter().flat_map(|k| [k.inside, k.passed]);
-        let mut ids: Vec<SoftBodyHandle> = spots.flatten().map(|(body, _)| body).collect();
+        let pose = self.edge_pose::<D>(holder);
+        let points = self.samples.iter().flat_map(|k| [k.inside, k.passed]);
+        let mut ids: Vec<SoftBodyHandle> = points.flatten().map(|(body, _)| body).collect();
         ids.sort_unstable();
         ids.dedup();
         let known = ids
             .iter()
             .filter_map(|&id| Some((id, bodies.get(id).ok()?)));
-        let cuts = known.map(|(id, body)| self.swath_in(&stance, (id, body), since));
+        let cuts = known.map(|(id, body)| self.cut_in(&pose, (id, body), since));
         let mut cuts: Vec<Cut> = cuts.collect();
         self.area += cuts.iter().map(|cut| cut.area).sum::<f64>();
         cuts.retain(|cut| !cut.faces.is_empty());
         for place in 0..self.samples.len() {
-            let at = self.place(&stance, place);
+            let at = self.place(&pose, place);
             let sample = &mut self.samples[place];
             if !sample.is_stuck() {
                 (sample.passed, sample.before) = (sample.inside, at);
@@ -88,13 +88,13 @@ impl KnifeState {
     }
 
     /// Returns the part of the edge's length that a sample represents [m].
-    pub(super) fn share<D: Dim>(&self, stance: &EdgePose, place: usize) -> f32 {
+    pub(super) fn share<D: Dim>(&self, pose: &EdgePose, place: usize) -> f32 {
         let last = self.samples.len() - 1;
         // In 2D the edge is a point that cuts a sheet 1 m thick.
         if D::N == 2 {
             return 1.0;
         }
-        let spacing = stance.long() / last as f32;
+        let spacing = pose.length() / last as f32;
         match place == 0 || place == last {
             true => 0.5 * spacing,
             false => spacing,
@@ -102,8 +102,8 @@ impl KnifeState {
     }
 
     /// Returns the position of a sample relative to the holder [m].
-    pub(super) fn lever(&self, stance: &EdgePose, place: usize) -> Vec3 {
-        let [from, to] = stance.levers;
+    pub(super) fn lever(&self, pose: &EdgePose, place: usize) -> Vec3 {
+        let [from, to] = pose.levers;
         let share = match self.samples.len() {
             1 => 0.5,
             many => place as f32 / (many - 1) as f32,
@@ -112,36 +112,36 @@ impl KnifeState {
     }
 
     /// Returns the world-space position of a sample [m].
-    fn place(&self, stance: &EdgePose, place: usize) -> Vec3 {
-        stance.position + self.lever(stance, place)
+    fn place(&self, pose: &EdgePose, place: usize) -> Vec3 {
+        pose.position + self.lever(pose, place)
     }
 
     /// Adjusts the number of samples to the smallest voxel of all bodies.
-    fn take_samples<D: Dim>(&mut self, stance: &EdgePose, bodies: &SoftBodies<D>) {
+    fn update_sample_count<D: Dim>(&mut self, pose: &EdgePose, bodies: &SoftBodies<D>) {
         let sizes = bodies.iter().map(|body| body.grid().voxel_size());
         let least = sizes.fold(f32::INFINITY, f32::min);
         // Measures the edge in local coordinates, because the length of the rotated edge fluctuates by
         // rounding.
-        let long = (self.edge[1] - self.edge[0]).length();
-        let asked = (SAMPLES_PER_VOXEL * long / least).ceil() as usize;
+        let length = (self.edge[1] - self.edge[0]).length();
+        let asked = (SAMPLES_PER_VOXEL * length / least).ceil() as usize;
         // In 2D the edge is a point with a single sample.
         let count = match D::N {
             2 => 1,
-            _ => asked.clamp(1, MOST_SAMPLES) + 1,
+            _ => asked.clamp(1, MAX_SAMPLES) + 1,
         };
         if count != self.samples.len() {
             self.samples = vec![Sample::default(); count];
             self.knows_near = false;
             for place in 0..count {
-                self.samples[place].before = self.place(stance, place);
+                self.samples[place].before = self.place(pose, place);
             }
         }
     }
 
     /// Lists, for each sample, the elements that it may enter within `ahead` seconds.
-    fn look_around<D: Dim>(
+    fn find_near_elements<D: Dim>(
         &mut self,
-        stance: &EdgePose,
+        pose: &EdgePose,
         bodies: &SoftBodies<D>,
         holder: &RigidState,
         ahead: f32,
@@ -149,12 +149,12 @@ impl KnifeState {
         self.knows_near = true;
         self.near.resize(self.samples.len(), Vec::new());
         self.near.iter_mut().for_each(Vec::clear);
-        let from = stance.position + stance.levers[0];
-        let long = stance.long();
+        let from = pose.position + pose.levers[0];
+        let length = pose.length();
         // In 2D the infinite spacing assigns all listed elements to the only sample.
         let spacing = match D::N {
             2 => f32::INFINITY,
-            _ => long / (self.samples.len() - 1) as f32,
+            _ => length / (self.samples.len() - 1) as f32,
         };
         for (id, body) in bodies.entries() {
             if !holder.layers.meet(body.layers()) {
@@ -169,9 +169,9 @@ impl KnifeState {
                 let apart = body.positions()[node].xyz() - from;
                 let (along, span) = match D::N {
                     2 => (0.0, 0.0),
-                    _ => (apart.dot(stance.along), long),
+                    _ => (apart.dot(pose.along), length),
                 };
-                let nearest = stance.along * along.clamp(0.0, span);
+                let nearest = pose.along * along.clamp(0.0, span);
                 if (apart - nearest).length() > reach {
                     continue;
                 }
@@ -200,21 +200,21 @@ impl KnifeState {
         bodies: &SoftBodies<D>,
         place: usize,
         at: Vec3,
-    ) -> Option<(SoftBodyHandle, Spot)> {
-        if let Some((id, spot)) = self.samples[place].inside
+    ) -> Option<(SoftBodyHandle, MaterialPoint)> {
+        if let Some((id, point)) = self.samples[place].inside
             && let Ok(body) = bodies.get(id)
         {
             // In an element that is pressed flat, the search finds no point. The sample then keeps its last
             // rest position if that is still near.
-            let found = Spot::find(body, at, spot.voxel);
-            if let Some(spot) = found.or(Some(spot).filter(|spot| spot.is_near(body, at))) {
-                return Some((id, spot));
+            let found = MaterialPoint::find(body, at, point.voxel);
+            if let Some(point) = found.or(Some(point).filter(|point| point.is_near(body, at))) {
+                return Some((id, point));
             }
         }
         let beside = [place.checked_sub(1), Some(place + 1)];
         let others = beside.into_iter().flatten();
         let known = others.filter_map(|place| self.samples.get(place)?.inside);
-        let known = known.map(|(body, spot)| (body, spot.voxel));
+        let known = known.map(|(body, point)| (body, point.voxel));
         let is_in_reach = |near: &&Near| {
             let Ok(body) = bodies.get(near.body) else {
                 return false;
@@ -222,29 +222,31 @@ impl KnifeState {
             let node = body.positions()[near.node].xyz();
             (node - at).length() <= near.reach
                 && (body.mesh().element_at(near.voxel))
-                    .is_some_and(|element| material_point::may_have(body, element, at))
+                    .is_some_and(|element| material_point::may_contain(body, element, at))
         };
         let near = self.near[place].iter().filter(is_in_reach);
         let mut tried = known.chain(near.map(|near| (near.body, near.voxel)));
-        tried.find_map(|(id, voxel)| Some((id, Spot::find(bodies.get(id).ok()?, at, voxel)?)))
+        tried.find_map(|(id, voxel)| {
+            Some((id, MaterialPoint::find(bodies.get(id).ok()?, at, voxel)?))
+        })
     }
 
     /// Returns the cut of the edge in one body since the last sweep.
-    fn swath_in<D: Dim>(
+    fn cut_in<D: Dim>(
         &self,
-        stance: &EdgePose,
+        pose: &EdgePose,
         (id, body): (SoftBodyHandle, &SoftBody<D>),
         since: f32,
     ) -> Cut {
         let size = body.grid().voxel_size();
         let rows: Vec<Option<[RestPosition; 2]>> = (0..self.samples.len())
-            .map(|place| self.way_in(stance, (id, body), place, since))
+            .map(|place| self.path_in(pose, (id, body), place, since))
             .collect();
         let is_inside = |place: usize| self.samples[place].inside_of(id).is_some();
         let cuts = |place: usize| f64::from(u8::from(self.samples[place].cut && is_inside(place)));
         let (mut faces, mut area) = (Faces::new(), 0.0);
         let mut add = |patch: [RestPosition; 4], share: f64| {
-            swept_area::go_through::<D>(patch, body.grid().size(), &mut faces);
+            swept_area::add_crossed_faces::<D>(patch, body.grid().size(), &mut faces);
             area += share * swept_area::area(patch);
         };
         // In 2D a sample sweeps a line, which stands for an area through the 1 m thick body.
@@ -260,12 +262,12 @@ impl KnifeState {
                 add(patch, cuts(0) / f64::from(size));
             }
         } else {
-            let apart = f64::from(stance.long() / size) / (self.samples.len() - 1) as f64;
+            let apart = f64::from(pose.length() / size) / (self.samples.len() - 1) as f64;
             for (place, pair) in rows.windows(2).enumerate() {
                 let [Some([a, b]), Some([d, c])] = pair else {
                     continue;
                 };
-                let most = MOST_STRETCH * apart + MOST_JUMP;
+                let most = MAX_STRETCH * apart + MAX_JUMP;
                 if far(*a, *d) > most || far(*b, *c) > most {
                     continue;
                 }
@@ -293,15 +295,15 @@ impl KnifeState {
             body: id,
             faces,
             area: area * f64::from(size * size),
-            at: self.place(stance, middle),
+            at: self.place(pose, middle),
         }
     }
 
     /// Returns the start and end of a sample's path through a body since the last sweep, in rest coordinates
     /// [voxels]. Returns `None` if neither the sample nor an adjacent one is or was in the body.
-    fn way_in<D: Dim>(
+    fn path_in<D: Dim>(
         &self,
-        stance: &EdgePose,
+        pose: &EdgePose,
         (id, body): (SoftBodyHandle, &SoftBody<D>),
         place: usize,
         since: f32,
@@ -315,22 +317,22 @@ impl KnifeState {
         // adjacent sample.
         let base = inside.or(passed).or_else(of_neighbour)?;
         let size = body.grid().voxel_size();
-        let at = self.place(stance, place);
-        let now = inside.map_or_else(|| base.extend(body, at), |spot| Some(spot.at))?;
+        let at = self.place(pose, place);
+        let now = inside.map_or_else(|| base.extend(body, at), |point| Some(point.at))?;
         // Includes the motion of the tissue: tissue that moves against a resting edge is cut.
         let tissue = base.velocity(body)? * since;
         let before = || base.extend(body, sample.before + tissue);
-        let before = passed.map_or_else(before, |spot| Some(spot.at))?;
+        let before = passed.map_or_else(before, |point| Some(point.at))?;
         if sample.is_stuck() {
             let place = before.as_dvec3();
             return Some([place, place]);
         }
-        let [toward] = base.directions(body, [stance.toward])?;
+        let [toward] = base.rest_directions(body, [pose.toward])?;
         let [now, before, toward] = [now, before, toward].map(Vec3::as_dvec3);
         let way = now - before;
         let travel = (at - sample.before).length() + tissue.length();
         let reach = f64::from(travel / size);
-        let is_jump = way.length() > MOST_STRETCH * reach + MOST_JUMP;
+        let is_jump = way.length() > MAX_STRETCH * reach + MAX_JUMP;
         // A sample that moves backwards, through its own cut, opens no faces.
         let forth = way.dot(toward) / toward.length().max(1e-9);
         let is_drawn_back = forth < 0.0 && 2.0 * forth * forth > way.dot(way);

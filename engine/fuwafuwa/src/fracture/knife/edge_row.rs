@@ -12,7 +12,7 @@ use glam::Vec3;
 
 /// Solver iterations over all rows per substep. Several are required because adjacent samples push the same
 /// nodes. With 2 iterations, the two sides of a cut stay connected.
-const ROUNDS: usize = 8;
+const ITERATIONS: usize = 8;
 
 /// Share of the limit impulse at which a row counts as having reached its limit, so that the edge advances.
 /// It is below 1 to allow for rounding.
@@ -24,7 +24,7 @@ struct EdgeRow {
     /// Nodes of the element around the sample, with their interpolation weights.
     weights: Vec<(NodeId, f32)>,
     /// Inverse effective mass of the tissue at the sample [1/kg].
-    gain: f32,
+    inverse_mass: f32,
     /// Lever arm from the position of the holder to the sample [m].
     lever: Vec3,
     /// Maximum impulses in the substep: in the cutting direction, and sideways in both senses [N s].
@@ -45,22 +45,22 @@ impl KnifeState {
         let Ok(holder) = rigids.get_mut(self.holder) else {
             return Vec::new();
         };
-        let stance = self.stance::<D>(holder);
+        let pose = self.edge_pose::<D>(holder);
         let mut woken = Vec::new();
         let mut rows = Vec::new();
         for place in 0..self.samples.len() {
             let Some((id, _)) = self.samples[place].inside else {
                 continue;
             };
-            let row = self.row(&stance, place, &bodies[id], duration);
+            let row = self.row(&pose, place, &bodies[id], duration);
             let piece = bodies[id].pieces().of_node(row.weights[0].0);
             if bodies[id].pieces().list[piece].asleep && holder.pushes() {
                 woken.push((id.slot(), piece));
             }
             rows.push((place, row));
         }
-        let ways = [stance.toward, stance.across];
-        for _ in 0..ROUNDS {
+        let ways = [pose.toward, pose.across];
+        for _ in 0..ITERATIONS {
             for (_, row) in &mut rows {
                 let body = bodies
                     .get_mut(row.body)
@@ -86,11 +86,11 @@ impl KnifeState {
     }
 
     /// Returns the pieces that contain samples of the edge. They stay awake while the edge moves.
-    pub(crate) fn held<D: Dim>(&self, bodies: &SoftBodies<D>) -> Vec<(BodySlot, PieceId)> {
+    pub(crate) fn pieces_inside<D: Dim>(&self, bodies: &SoftBodies<D>) -> Vec<(BodySlot, PieceId)> {
         let inside = self.samples.iter().filter_map(|sample| sample.inside);
-        let pieces = inside.filter_map(|(id, spot)| {
+        let pieces = inside.filter_map(|(id, point)| {
             let body = bodies.get(id).ok()?;
-            let owner = body.mesh().owner(spot.voxel)?;
+            let owner = body.mesh().owner(point.voxel)?;
             Some((id.slot(), body.pieces().of_element(owner)))
         });
         let mut pieces: Vec<(BodySlot, PieceId)> = pieces.collect();
@@ -102,34 +102,34 @@ impl KnifeState {
     /// Returns the solver row of a sample that is in a body.
     fn row<D: Dim>(
         &self,
-        stance: &EdgePose,
+        pose: &EdgePose,
         place: usize,
         body: &SoftBody<D>,
         duration: f32,
     ) -> EdgeRow {
-        let (id, spot) = self.samples[place].inside.expect("the sample is in a body");
+        let (id, point) = self.samples[place].inside.expect("the sample is in a body");
         let mesh = body.mesh();
         let owner = mesh
-            .owner(spot.voxel)
+            .owner(point.voxel)
             .expect("the sample is in a solid voxel");
         let element = mesh.element(owner).expect("owners are alive");
         let material = body.material(element);
-        let ways = [stance.along, stance.toward];
-        let [along, toward] = spot.directions(body, ways).unwrap_or(ways);
-        let forth = match spot.is_whole_ahead(body, along, toward) {
-            true => self.force_of_a_cut(material),
+        let ways = [pose.along, pose.toward];
+        let [along, toward] = point.rest_directions(body, ways).unwrap_or(ways);
+        let forth = match point.is_uncut_ahead(body, along, toward) {
+            true => self.cutting_force(material),
             false => 0.0,
         };
-        let share = self.share::<D>(stance, place) * duration;
-        let weights = body.weights(element, spot.at);
-        let gains = weights
+        let share = self.share::<D>(pose, place) * duration;
+        let weights = body.weights(element, point.at);
+        let inverse_masses = weights
             .iter()
             .map(|&(node, weight)| weight * weight * body.inverse_masses()[node]);
         EdgeRow {
             body: id,
-            gain: gains.sum(),
+            inverse_mass: inverse_masses.sum(),
             weights,
-            lever: self.lever(stance, place),
+            lever: self.lever(pose, place),
             // A sample that represents no length, in unbreakable material, gives 0 · ∞ = NaN, which `max`
             // turns into 0.
             limits: [forth, material.strength * self.height].map(|k| (share * k).max(0.0)),
@@ -138,7 +138,7 @@ impl KnifeState {
     }
 
     /// Returns the force per metre of edge that cuts a material [N/m].
-    fn force_of_a_cut(&self, material: &Material) -> f32 {
+    fn cutting_force(&self, material: &Material) -> f32 {
         let dull = match self.radius > 0.0 {
             true => 2.0 * self.radius * material.strength,
             false => 0.0,
@@ -162,10 +162,11 @@ fn solve_row<D: Dim>(
 ) {
     for (way, direction) in ways.into_iter().enumerate() {
         // If neither the tissue nor the holder can move, the division by 0 drives the impulse to its limit.
-        let yields = row.gain + holder.yields(row.lever, direction);
+        let total_inverse_mass =
+            row.inverse_mass + holder.inverse_effective_mass(row.lever, direction);
         let speed = slip(row, body, holder).dot(direction);
         let least = if way == 0 { 0.0 } else { -row.limits[way] };
-        let wanted = (row.impulse[way] + speed / yields).clamp(least, row.limits[way]);
+        let wanted = (row.impulse[way] + speed / total_inverse_mass).clamp(least, row.limits[way]);
         let change = wanted - row.impulse[way];
         if !change.is_finite() {
             continue;
@@ -173,9 +174,9 @@ fn solve_row<D: Dim>(
         row.impulse[way] = wanted;
         let push = direction * change;
         for &(node, weight) in &row.weights {
-            let gain = Row::from(push) * (weight * body.inverse_masses()[node]);
-            body.velocities_mut()[node] += gain;
+            let change = Row::from(push) * (weight * body.inverse_masses()[node]);
+            body.velocities_mut()[node] += change;
         }
-        holder.push_at(-push, row.lever, duration);
+        holder.apply_contact_impulse_at(-push, row.lever, duration);
     }
 }

@@ -1,6 +1,6 @@
 //! Samples of a cutting edge and their state in the tissue.
 
-use super::material_point::Spot;
+use super::material_point::MaterialPoint;
 use crate::foundation::arena::SoftBodyHandle;
 use crate::foundation::dim::Point;
 use crate::foundation::hash::hash_state;
@@ -9,7 +9,7 @@ use glam::Vec3;
 
 /// Maximum number of intervals between adjacent samples of an edge. With two samples per voxel, it suffices
 /// for an edge 256 voxels long, a quarter of the width of the largest grid.
-pub const MOST_SAMPLES: usize = 512;
+pub const MAX_SAMPLES: usize = 512;
 
 /// Element that a sample may enter before the next search.
 #[derive(Copy, Clone, Debug)]
@@ -27,10 +27,10 @@ pub struct Near {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sample {
     /// Body that contains the sample, and the rest position of the sample there.
-    pub inside: Option<(SoftBodyHandle, Spot)>,
+    pub inside: Option<(SoftBodyHandle, MaterialPoint)>,
     /// Body and rest position up to which the area swept by the sample is already counted. Stays unchanged
     /// while tissue holds the sample.
-    pub passed: Option<(SoftBodyHandle, Spot)>,
+    pub passed: Option<(SoftBodyHandle, MaterialPoint)>,
     /// World-space position of the sample when `passed` last changed [m].
     pub before: Vec3,
     /// Whether the sample has advanced through tissue since the last sweep.
@@ -43,15 +43,15 @@ hash_state! { struct Sample { inside, passed, before, slid, cut } }
 
 impl Sample {
     /// Returns the rest position in `body` up to which the area swept by the sample is already counted.
-    pub fn passed_in(&self, body: SoftBodyHandle) -> Option<Spot> {
+    pub fn passed_in(&self, body: SoftBodyHandle) -> Option<MaterialPoint> {
         let passed = self.passed.filter(|(own, _)| *own == body);
-        passed.map(|(_, spot)| spot)
+        passed.map(|(_, point)| point)
     }
 
     /// Returns the present rest position of the sample in `body`.
-    pub fn inside_of(&self, body: SoftBodyHandle) -> Option<Spot> {
+    pub fn inside_of(&self, body: SoftBodyHandle) -> Option<MaterialPoint> {
         let inside = self.inside.filter(|(own, _)| *own == body);
-        inside.map(|(_, spot)| spot)
+        inside.map(|(_, point)| point)
     }
 
     /// Returns whether tissue has held the sample since the last sweep.
@@ -63,6 +63,6 @@ impl Sample {
     #[cfg(feature = "serde")]
     pub fn is_sound(&self) -> bool {
         let spots = [self.inside, self.passed].into_iter().flatten();
-        self.before.is_finite() && { spots }.all(|(_, spot)| spot.at.is_finite())
+        self.before.is_finite() && { spots }.all(|(_, point)| point.at.is_finite())
     }
 }

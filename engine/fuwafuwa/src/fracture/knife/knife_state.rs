@@ -2,7 +2,7 @@
 
 use super::Knife;
 #[cfg(feature = "serde")]
-use super::edge_sample::MOST_SAMPLES;
+use super::edge_sample::MAX_SAMPLES;
 use super::edge_sample::{Near, Sample};
 use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, KnifeHandle, RigidBodyHandle};
@@ -161,12 +161,12 @@ impl KnifeState {
             && numbers.into_iter().all(Vec3::is_finite)
             && self.work.is_finite()
             && self.area.is_finite()
-            && self.samples.len() <= MOST_SAMPLES + 1
+            && self.samples.len() <= MAX_SAMPLES + 1
             && self.samples.iter().all(Sample::is_sound)
     }
 
     /// Returns the pose of the edge in world space, given the rigid body that holds the knife.
-    pub(super) fn stance<D: Dim>(&self, holder: &RigidState) -> EdgePose {
+    pub(super) fn edge_pose<D: Dim>(&self, holder: &RigidState) -> EdgePose {
         let turn = |vector: Vec3| holder.rotation().apply(vector);
         let levers = self.edge.map(|end| flat::<D>(turn(end)));
         // In 2D the edge is a point. It stands for an edge along the third axis.
@@ -203,7 +203,7 @@ pub(super) struct EdgePose {
 
 impl EdgePose {
     /// Returns the length of the edge [m].
-    pub(super) fn long(&self) -> f32 {
+    pub(super) fn length(&self) -> f32 {
         (self.levers[1] - self.levers[0]).length()
     }
 }

@@ -7,25 +7,25 @@ use crate::soft_body::SoftBody;
 use crate::topology::mesh::Element;
 use glam::Vec3;
 
-/// Maximum number of elements that [`Spot::find`] visits.
+/// Maximum number of elements that [`MaterialPoint::find`] visits.
 const STEPS: usize = 6;
 /// Distance outside of an element's cell up to which a point counts as inside [voxels]. Neighbouring elements
 /// deform differently, so without this tolerance a point between two cells could be outside of both.
-const LITTLE: f32 = 0.25;
+const CELL_TOLERANCE: f32 = 0.25;
 
 /// Point that moves with the material of a body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Spot {
+pub struct MaterialPoint {
     /// Voxel that contains the point in the undeformed body.
     pub voxel: Point,
     /// Rest position [voxels].
     pub at: Vec3,
 }
 
-hash_state! { struct Spot { voxel, at } }
+hash_state! { struct MaterialPoint { voxel, at } }
 
-impl Spot {
+impl MaterialPoint {
     /// Finds the material point at a world-space position [m]. Begins in the voxel `from` and walks from
     /// element to element. Returns `None` if the position is not in the body, or more than `STEPS` elements
     /// away from the start.
@@ -46,7 +46,7 @@ impl Spot {
             if !body.grid().is_solid(next) {
                 return None;
             }
-            if step + 1 == STEPS && distance::<D>(element, rest) <= LITTLE {
+            if step + 1 == STEPS && distance::<D>(element, rest) <= CELL_TOLERANCE {
                 return Some(Self { voxel, at: rest });
             }
             voxel = next;
@@ -68,7 +68,7 @@ impl Spot {
 
     /// Maps world-space directions to rest coordinates: undoes the rotation and strain of the element at this
     /// point. A direction of length 1 has length 1 [voxels] after this if the element is unstrained.
-    pub fn directions<D: Dim, const COUNT: usize>(
+    pub fn rest_directions<D: Dim, const COUNT: usize>(
         &self,
         body: &SoftBody<D>,
         ways: [Vec3; COUNT],
@@ -87,7 +87,7 @@ impl Spot {
     /// Returns whether the material in front of an edge is uncut: whether the next face that the edge would
     /// open is still closed. `along` and `toward` are the direction of the edge and the cutting direction, in
     /// rest coordinates [voxels].
-    pub fn is_whole_ahead<D: Dim>(&self, body: &SoftBody<D>, along: Vec3, toward: Vec3) -> bool {
+    pub fn is_uncut_ahead<D: Dim>(&self, body: &SoftBody<D>, along: Vec3, toward: Vec3) -> bool {
         let ahead = self.at + toward * 0.5;
         let Some(voxel) = voxel_of::<D>(ahead).filter(|&at| body.grid().is_solid(at)) else {
             return false;
@@ -134,8 +134,8 @@ fn voxel_of<D: Dim>(at: Vec3) -> Option<Point> {
 
 /// Returns whether an element may contain a world-space point [m]: whether the point is in the box around the
 /// element's nodes, enlarged by a margin.
-pub fn may_have<D: Dim>(body: &SoftBody<D>, element: &Element, at: Vec3) -> bool {
-    let margin = LITTLE * body.grid().voxel_size() * element.cell.width() as f32;
+pub fn may_contain<D: Dim>(body: &SoftBody<D>, element: &Element, at: Vec3) -> bool {
+    let margin = CELL_TOLERANCE * body.grid().voxel_size() * element.cell.width() as f32;
     (0..D::N).all(|axis| {
         let apart = |&node: &NodeId| body.positions()[node][axis] - at[axis];
         let apart = element.nodes.iter().map(apart);

@@ -18,10 +18,10 @@ pub type Faces = BTreeSet<(Point, usize)>;
 
 /// Adds the faces of a grid of `size` [voxels] that a quadrilateral patch crosses. The corners of the patch
 /// are given in order around its outline.
-pub fn go_through<D: Dim>([a, b, c, d]: [RestPosition; 4], size: Point, faces: &mut Faces) {
+pub fn add_crossed_faces<D: Dim>([a, b, c, d]: [RestPosition; 4], size: Point, faces: &mut Faces) {
     for triangle in [[a, b, c], [a, c, d]] {
         for axis in 0..D::N {
-            go_along(triangle, axis, size, faces);
+            add_faces_along(triangle, axis, size, faces);
         }
     }
 }
@@ -39,7 +39,7 @@ pub fn area([a, b, c, d]: [RestPosition; 4]) -> f64 {
 }
 
 /// Finds the faces that a triangle crosses, among the faces normal to `axis`, and adds them to `faces`.
-fn go_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut Faces) {
+fn add_faces_along(triangle: [RestPosition; 3], axis: usize, size: Point, faces: &mut Faces) {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let seen = triangle.map(|corner| [corner[u], corner[v]]);
     let double = side(seen[0], seen[1], seen[2]);
@@ -94,7 +94,7 @@ mod tests {
     use crate::foundation::dim::{Dim2, Dim3};
 
     #[test]
-    fn flat_swath_opens_exactly_the_crossed_faces() {
+    fn flat_area_opens_exactly_the_crossed_faces() {
         let mut faces = Faces::new();
         let at = DVec3::new;
         let corners = [
@@ -103,14 +103,14 @@ mod tests {
             at(2.9, 4.0, 4.0),
             at(2.9, 0.0, 4.0),
         ];
-        go_through::<Dim3>(corners, [4; 3], &mut faces);
+        add_crossed_faces::<Dim3>(corners, [4; 3], &mut faces);
         let sixteen: Faces = (0..16).map(|k| ([2, k % 4, k / 4], 0)).collect();
         assert_eq!(faces, sixteen);
         assert!((area(corners) - 16.0).abs() < 1e-12);
     }
 
     #[test]
-    fn swath_of_small_patches_separates_the_lattice_without_gaps() {
+    fn area_of_small_patches_separates_the_lattice_without_gaps() {
         // A wavy swept area over 12 by 12 voxels: no closed face joins the voxels above it to those below.
         let height =
             |x: f64, z: f64| 6.0 + 2.3 * libm::sin(0.7 * x) + 1.9 * libm::cos(0.55 * z + 0.3 * x);
@@ -127,7 +127,7 @@ mod tests {
                     place(i + 1, k + 1),
                     place(i, k + 1),
                 ];
-                go_through::<Dim3>(patch, [12; 3], &mut faces);
+                add_crossed_faces::<Dim3>(patch, [12; 3], &mut faces);
             }
         }
         let mut reached = std::collections::BTreeSet::from([[0, 0, 0]]);
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn swath_far_beyond_the_grid_is_clipped() {
+    fn area_far_beyond_the_grid_is_clipped() {
         let far = 1e12;
         let corners = [
             [-far, 1.4, -far],
@@ -161,7 +161,7 @@ mod tests {
         ]
         .map(DVec3::from);
         let mut faces = Faces::new();
-        go_through::<Dim3>(corners, [3; 3], &mut faces);
+        add_crossed_faces::<Dim3>(corners, [3; 3], &mut faces);
         let nine: Faces = (0..9).map(|k| ([k % 3, 0, k / 3], 1)).collect();
         assert_eq!(faces, nine);
     }
@@ -177,7 +177,7 @@ mod tests {
             [to[0], to[1], 0.0],
         ]
         .map(DVec3::from);
-        go_through::<Dim2>(corners, [6, 4, 1], &mut faces);
+        add_crossed_faces::<Dim2>(corners, [6, 4, 1], &mut faces);
         let four: Faces = (0..4).map(|x| ([x, 1, 0], 1)).collect();
         assert_eq!(faces, four);
     }

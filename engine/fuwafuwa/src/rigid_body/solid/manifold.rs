@@ -1,17 +1,17 @@
 //! Contact manifolds between shapes: a common normal and the contact points.
 
 use super::Solid;
-use super::oriented_box::{Brick, Separation, Side};
+use super::oriented_box::{OrientedBox, SeparatingFeature, Separation};
 use glam::Vec3;
 
 /// Cosine of the largest allowed angle, 26°, between the normal of the manifold and the normal of the other
 /// shape at an end of a capsule. At a larger angle, the end is no contact point. The angle is 0 if the
 /// capsule lies flat on a face.
-const ALONG: f32 = 0.9;
+const MIN_END_COSINE: f32 = 0.9;
 /// Distance below which two contact points of a capsule are duplicates, as a share of the capsule's radius.
 /// The point nearest to the other shape is left out if a contact point at an end of the capsule is closer
 /// than this.
-const APART: f32 = 0.5;
+const MIN_POINT_SPACING: f32 = 0.5;
 
 /// Contact manifold of two shapes.
 #[derive(Clone, Debug, Default)]
@@ -43,10 +43,12 @@ impl Solid {
                 let points = vec![point];
                 Manifold { normal, points }
             }
-            (Self::Capsule { .. }, _) if !matches!(other, Self::Ball { .. }) => bar(self, other),
+            (Self::Capsule { .. }, _) if !matches!(other, Self::Ball { .. }) => {
+                capsule(self, other)
+            }
             (_, Self::Ball { .. } | Self::Capsule { .. }) => other.manifold(self, margin).turned(),
-            _ => match (Brick::of(self), Brick::of(other), other) {
-                (Some(own), Some(others), _) => bricks(&own, &others, margin),
+            _ => match (OrientedBox::of(self), OrientedBox::of(other), other) {
+                (Some(own), Some(others), _) => boxes(&own, &others, margin),
                 (Some(own), None, &Self::HalfSpace { normal, offset }) => {
                     on_plane(&own, normal, offset)
                 }
@@ -82,7 +84,7 @@ fn beneath(centre: Vec3, normal: Vec3, radius: f32, gap: f32, key: u32) -> Manif
 /// Returns the manifold of a capsule with any shape except a ball. Possible contact points are the ends of
 /// the capsule's segment, and the point of this segment nearest to the other shape. If the other shape is a
 /// capsule, the ends of its segment are possible contact points, too.
-fn bar(own: &Solid, other: &Solid) -> Manifold {
+fn capsule(own: &Solid, other: &Solid) -> Manifold {
     let &Solid::Capsule { from, to, radius } = own else {
         return Manifold::default();
     };
@@ -91,7 +93,7 @@ fn bar(own: &Solid, other: &Solid) -> Manifold {
     let mut points = Vec::new();
     for (key, end) in [(1, from), (2, to)] {
         let (far, way) = other.distance(end);
-        if way.dot(normal) > ALONG {
+        if way.dot(normal) > MIN_END_COSINE {
             points.push(beneath(end, normal, radius, far - radius, key));
         }
     }
@@ -103,22 +105,23 @@ fn bar(own: &Solid, other: &Solid) -> Manifold {
     {
         for (key, end) in [(3, from), (4, to)] {
             let (far, way) = own.distance(end);
-            if way.dot(normal) < -ALONG {
+            if way.dot(normal) < -MIN_END_COSINE {
                 let point = beneath(end, -normal, thickness, far - thickness, key);
                 points.push(point);
             }
         }
     }
     let middle = beneath(nearest, normal, radius, distance - radius, 0);
-    let is_apart = |point: &ManifoldPoint| (point.at - middle.at).length() > APART * radius;
+    let is_apart =
+        |point: &ManifoldPoint| (point.at - middle.at).length() > MIN_POINT_SPACING * radius;
     if points.iter().all(is_apart) {
         points.push(middle);
     }
     Manifold { normal, points }
 }
 
-fn on_plane(brick: &Brick, normal: Vec3, offset: f32) -> Manifold {
-    let corners = (0..brick.corner_count()).map(|number| (number as u32, brick.corner(number)));
+fn on_plane(cuboid: &OrientedBox, normal: Vec3, offset: f32) -> Manifold {
+    let corners = (0..cuboid.corner_count()).map(|number| (number as u32, cuboid.corner(number)));
     let points = corners.map(|(key, corner)| {
         let gap = normal.dot(corner) - offset;
         beneath(corner, normal, 0.0, gap, key)
@@ -129,16 +132,20 @@ fn on_plane(brick: &Brick, normal: Vec3, offset: f32) -> Manifold {
     }
 }
 
-fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
+fn boxes(own: &OrientedBox, other: &OrientedBox, margin: f32) -> Manifold {
     let separation = own.separation(other);
     if separation.gap >= margin {
         return Manifold::default();
     }
-    let Separation { gap, normal, side } = separation;
-    let points = match side {
-        Side::First(axis) => on_face(own, axis, -normal, other),
-        Side::Second(axis) => on_face(other, axis, normal, own),
-        Side::Edges(first, second) => {
+    let Separation {
+        gap,
+        normal,
+        feature,
+    } = separation;
+    let points = match feature {
+        SeparatingFeature::First(axis) => on_face(own, axis, -normal, other),
+        SeparatingFeature::Second(axis) => on_face(other, axis, normal, own),
+        SeparatingFeature::Edges(first, second) => {
             let [a, b] = [edge(own, first, -normal), edge(other, second, normal)];
             let at = between(a, own.axes[first], b, other.axes[second]);
             let key = 1000 + 3 * first as u32 + second as u32;
@@ -148,22 +155,27 @@ fn bricks(own: &Brick, other: &Brick, margin: f32) -> Manifold {
     Manifold { normal, points }
 }
 
-/// Returns the contact points between a face of the box `ground` and the box `brick`. The face is
+/// Returns the contact points between a face of the box `ground` and the box `cuboid`. The face is
 /// perpendicular to `axis` and has the outward normal `out`.
-fn on_face(ground: &Brick, axis: usize, out: Vec3, brick: &Brick) -> Vec<ManifoldPoint> {
-    let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != axis).collect();
+fn on_face(
+    ground: &OrientedBox,
+    axis: usize,
+    out: Vec3,
+    cuboid: &OrientedBox,
+) -> Vec<ManifoldPoint> {
+    let others: Vec<usize> = (0..cuboid.axis_count).filter(|&k| k != axis).collect();
     let level = out.dot(ground.centre) + ground.half[axis];
-    // Selects the face of `brick` that lies on the ground: the face with the normal most opposite to `out`.
-    let facing = |k: &usize| brick.axes[*k].dot(out).abs();
-    let face = (0..brick.axis_count).max_by(|a, b| facing(a).total_cmp(&facing(b)));
+    // Selects the face of `cuboid` that lies on the ground: the face with the normal most opposite to `out`.
+    let facing = |k: &usize| cuboid.axes[*k].dot(out).abs();
+    let face = (0..cuboid.axis_count).max_by(|a, b| facing(a).total_cmp(&facing(b)));
     let face = face.unwrap_or(axis);
-    let is_upper = brick.axes[face].dot(out) < 0.0;
-    let mut polygon: Vec<(Vec3, u32)> = around(brick, face, is_upper);
+    let is_upper = cuboid.axes[face].dot(out) < 0.0;
+    let mut polygon: Vec<(Vec3, u32)> = around(cuboid, face, is_upper);
     for (number, side) in others.into_iter().enumerate() {
         for (sign, plane) in [(1.0, 2 * number), (-1.0, 2 * number + 1)] {
             let way = ground.axes[side] * sign;
-            let most = way.dot(ground.centre) + ground.half[side];
-            polygon = clipped(&polygon, way, most, plane as u32);
+            let max = way.dot(ground.centre) + ground.half[side];
+            polygon = clipped(&polygon, way, max, plane as u32);
         }
     }
     let point = |&(corner, key): &(Vec3, u32)| {
@@ -175,9 +187,9 @@ fn on_face(ground: &Brick, axis: usize, out: Vec3, brick: &Brick) -> Vec<Manifol
 }
 
 /// Returns the corners of a face in circular order, each with its corner number as key.
-fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vec3, u32)> {
+fn around(cuboid: &OrientedBox, face: usize, is_upper: bool) -> Vec<(Vec3, u32)> {
     let fixed = usize::from(is_upper) << face;
-    let others: Vec<usize> = (0..brick.axis_count).filter(|&k| k != face).collect();
+    let others: Vec<usize> = (0..cuboid.axis_count).filter(|&k| k != face).collect();
     let numbers: Vec<usize> = match others[..] {
         [a] => vec![0, 1 << a],
         [a, b] => vec![0, 1 << a, 1 << a | 1 << b, 1 << b],
@@ -185,17 +197,17 @@ fn around(brick: &Brick, face: usize, is_upper: bool) -> Vec<(Vec3, u32)> {
     };
     let corners = numbers.into_iter().map(|number| number | fixed);
     corners
-        .map(|number| (brick.corner(number), number as u32))
+        .map(|number| (cuboid.corner(number), number as u32))
         .collect()
 }
 
 /// Clips a polygon (in 2D a segment) by a plane: keeps the part in which the coordinate along the direction
-/// `way` is at most `most` [m]. New corners get a key derived from the clipped edge and `plane`.
-fn clipped(polygon: &[(Vec3, u32)], way: Vec3, most: f32, plane: u32) -> Vec<(Vec3, u32)> {
+/// `way` is at most `max` [m]. New corners get a key derived from the clipped edge and `plane`.
+fn clipped(polygon: &[(Vec3, u32)], way: Vec3, max: f32, plane: u32) -> Vec<(Vec3, u32)> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     let is_line = polygon.len() == 2;
     for (number, &(at, key)) in polygon.iter().enumerate() {
-        let beyond = way.dot(at) - most;
+        let beyond = way.dot(at) - max;
         if beyond <= 0.0 {
             kept.push((at, key));
         }
@@ -203,7 +215,7 @@ fn clipped(polygon: &[(Vec3, u32)], way: Vec3, most: f32, plane: u32) -> Vec<(Ve
             break;
         }
         let (next, next_key) = polygon[(number + 1) % polygon.len()];
-        let next_beyond = way.dot(next) - most;
+        let next_beyond = way.dot(next) - max;
         if (beyond <= 0.0) != (next_beyond <= 0.0) {
             let share = beyond / (beyond - next_beyond);
             let at = at + (next - at) * share;
@@ -217,15 +229,15 @@ fn clipped(polygon: &[(Vec3, u32)], way: Vec3, most: f32, plane: u32) -> Vec<(Ve
 
 /// Returns the midpoint of the box edge that is parallel to the axis `along` and lies farthest in the
 /// direction `way`.
-fn edge(brick: &Brick, along: usize, way: Vec3) -> Vec3 {
-    let others = (0..brick.axis_count).filter(|&axis| axis != along);
-    others.fold(brick.centre, |at, axis| {
-        let sign = if brick.axes[axis].dot(way) < 0.0 {
+fn edge(cuboid: &OrientedBox, along: usize, way: Vec3) -> Vec3 {
+    let others = (0..cuboid.axis_count).filter(|&axis| axis != along);
+    others.fold(cuboid.centre, |at, axis| {
+        let sign = if cuboid.axes[axis].dot(way) < 0.0 {
             -1.0
         } else {
             1.0
         };
-        at + brick.axes[axis] * (sign * brick.half[axis])
+        at + cuboid.axes[axis] * (sign * cuboid.half[axis])
     })
 }
 
@@ -275,11 +287,11 @@ mod tests {
     fn manifold_points_are_correct_for_all_pairs_of_shapes() {
         let up = Vec3::Y;
         let floor = Solid::half_space(up, Vec3::ZERO);
-        let brick = cube(Vec3::new(0.0, 0.49, 0.0), Vec3::new(1.0, 0.5, 0.7));
-        check(brick, floor, 4, -0.01, up);
+        let cuboid = cube(Vec3::new(0.0, 0.49, 0.0), Vec3::new(1.0, 0.5, 0.7));
+        check(cuboid, floor, 4, -0.01, up);
         check(
             cube(Vec3::new(0.3, 1.5, 0.2), Vec3::new(1.0, 0.5, 0.7)),
-            brick,
+            cuboid,
             4,
             0.01,
             up,
@@ -288,7 +300,7 @@ mod tests {
         let above = cube(Vec3::ZERO, Vec3::new(0.9, 0.5, 0.9)).rotated(turned);
         check(
             above.translated(Vec3::new(0.0, 1.48, 0.0)),
-            brick,
+            cuboid,
             8,
             -0.01,
             up,
@@ -304,7 +316,7 @@ mod tests {
         );
         check(flat(Vec3::new(0.4, 0.49, 0.0)), floor, 2, -0.01, up);
         // Capsules on the floor, on a box and on another capsule.
-        let bar = |y: f32, to: Vec3| {
+        let capsule = |y: f32, to: Vec3| {
             Solid::Capsule {
                 from: -to,
                 to,
@@ -312,13 +324,25 @@ mod tests {
             }
             .translated(Vec3::new(0.0, y, 0.0))
         };
-        check(bar(0.24, Vec3::X), floor, 2, -0.01, up);
-        check(bar(1.23, Vec3::new(0.8, 0.0, 0.0)), brick, 2, -0.01, up);
-        check(bar(1.23, Vec3::new(3.0, 0.0, 0.0)), brick, 1, -0.01, up);
-        check(bar(0.49, Vec3::X), bar(0.0, Vec3::Z), 1, -0.01, up);
+        check(capsule(0.24, Vec3::X), floor, 2, -0.01, up);
         check(
-            bar(0.49, Vec3::X),
-            bar(0.0, Vec3::new(2.0, 0.0, 0.0)),
+            capsule(1.23, Vec3::new(0.8, 0.0, 0.0)),
+            cuboid,
+            2,
+            -0.01,
+            up,
+        );
+        check(
+            capsule(1.23, Vec3::new(3.0, 0.0, 0.0)),
+            cuboid,
+            1,
+            -0.01,
+            up,
+        );
+        check(capsule(0.49, Vec3::X), capsule(0.0, Vec3::Z), 1, -0.01, up);
+        check(
+            capsule(0.49, Vec3::X),
+            capsule(0.0, Vec3::new(2.0, 0.0, 0.0)),
             2,
             -0.01,
             up,
@@ -327,8 +351,8 @@ mod tests {
             centre: Vec3::new(0.0, 1.24, 0.0),
             radius: 0.25,
         };
-        check(ball, brick, 1, 0.0, up);
-        check(bar(1.73, Vec3::X), ball, 1, -0.01, up);
+        check(ball, cuboid, 1, 0.0, up);
+        check(capsule(1.73, Vec3::X), ball, 1, -0.01, up);
         // Two boxes that touch at crossing edges.
         let quarter = std::f32::consts::FRAC_PI_4;
         let beam = |axis| cube(Vec3::ZERO, Vec3::ONE).rotated(Rotation::about(axis, quarter));
@@ -336,8 +360,8 @@ mod tests {
         check(high, beam(Vec3::Z), 1, -0.01, up);
         assert!(floor.manifold(&floor, 1.0).points.is_empty());
         assert!(
-            brick
-                .manifold(&brick.translated(Vec3::new(0.0, 3.0, 0.0)), 0.1)
+            cuboid
+                .manifold(&cuboid.translated(Vec3::new(0.0, 3.0, 0.0)), 0.1)
                 .points
                 .is_empty()
         );

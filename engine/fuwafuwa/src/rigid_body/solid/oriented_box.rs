@@ -8,11 +8,11 @@ use glam::Vec3;
 /// second box is chosen only if its separation exceeds that of the first box's best face axis by more than
 /// the bias. An edge axis must exceed the best face axis of both boxes by more than the bias. Faces are
 /// preferred because they give more contact points. The bias keeps resting boxes from switching between axes.
-const BEHIND: f32 = 0.01;
+const AXIS_BIAS: f32 = 0.01;
 
 /// Box with its centre, half extents and axes.
 #[derive(Copy, Clone, Debug)]
-pub struct Brick {
+pub struct OrientedBox {
     pub centre: Vec3,
     pub half: Vec3,
     pub axes: [Vec3; 3],
@@ -27,12 +27,12 @@ pub struct Separation {
     pub gap: f32,
     /// Unit normal from the second box to the first.
     pub normal: Vec3,
-    pub side: Side,
+    pub feature: SeparatingFeature,
 }
 
 /// Faces or edges of the boxes that define a separating axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Side {
+pub enum SeparatingFeature {
     /// Face of the first box, perpendicular to the box axis with this index.
     First(usize),
     /// Face of the second box, perpendicular to the box axis with this index.
@@ -41,7 +41,7 @@ pub enum Side {
     Edges(usize, usize),
 }
 
-impl Brick {
+impl OrientedBox {
     /// Converts an axis-aligned or oriented box; `None` for other shapes.
     pub fn of(shape: &Solid) -> Option<Self> {
         let (centre, half, rotation) = match *shape {
@@ -84,26 +84,32 @@ impl Brick {
     /// Returns the axis along which two boxes are separated most, or overlap least.
     pub fn separation(&self, other: &Self) -> Separation {
         let apart = self.centre - other.centre;
-        let along = |way: Vec3, side: Side| {
+        let along = |way: Vec3, feature: SeparatingFeature| {
             let distance = apart.dot(way);
             let normal = if distance < 0.0 { -way } else { way };
             let gap = distance.abs() - self.reach(way) - other.reach(way);
-            Separation { gap, normal, side }
+            Separation {
+                gap,
+                normal,
+                feature,
+            }
         };
         let larger =
             |best: Separation, next: Separation| if next.gap > best.gap { next } else { best };
         let none = Separation {
             gap: f32::NEG_INFINITY,
             normal: Vec3::Y,
-            side: Side::First(1),
+            feature: SeparatingFeature::First(1),
         };
-        let sizes = |brick: &Self| brick.half.to_array().into_iter().take(brick.axis_count);
+        let sizes = |cuboid: &Self| cuboid.half.to_array().into_iter().take(cuboid.axis_count);
         let sizes = sizes(self).chain(sizes(other));
-        let behind = BEHIND * sizes.fold(f32::MAX, f32::min);
-        let first = (0..self.axis_count).map(|axis| along(self.axes[axis], Side::First(axis)));
-        let second = (0..other.axis_count).map(|axis| along(other.axes[axis], Side::Second(axis)));
+        let bias = AXIS_BIAS * sizes.fold(f32::MAX, f32::min);
+        let first =
+            (0..self.axis_count).map(|axis| along(self.axes[axis], SeparatingFeature::First(axis)));
+        let second = (0..other.axis_count)
+            .map(|axis| along(other.axes[axis], SeparatingFeature::Second(axis)));
         let (first, second) = (first.fold(none, larger), second.fold(none, larger));
-        let best = match second.gap > first.gap + behind {
+        let best = match second.gap > first.gap + bias {
             true => second,
             false => first,
         };
@@ -117,10 +123,10 @@ impl Brick {
             // Skips parallel edges: if they separate two boxes, a face axis separates the boxes, too.
             if squared > 1e-6 {
                 let way = way * (1.0 / squared.sqrt());
-                edges = larger(edges, along(way, Side::Edges(own, others)));
+                edges = larger(edges, along(way, SeparatingFeature::Edges(own, others)));
             }
         }
-        match edges.gap > best.gap + behind {
+        match edges.gap > best.gap + bias {
             true => edges,
             false => best,
         }

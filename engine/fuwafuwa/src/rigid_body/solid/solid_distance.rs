@@ -1,13 +1,13 @@
 //! Distances between shapes.
 
-use super::oriented_box::Brick;
+use super::oriented_box::OrientedBox;
 use super::{Solid, distance_from_box};
 use glam::Vec3;
 
 /// Number of ternary-search steps that find the point of a segment nearest to a shape. Each step shrinks the
 /// search interval to two thirds of its length. After 40 steps, 1e-7 of the segment remains, the resolution
 /// of single precision.
-const NARROWINGS: usize = 40;
+const TERNARY_STEPS: usize = 40;
 
 impl Solid {
     /// Returns the distance to another shape [m], negative if the shapes overlap, and the unit direction from
@@ -41,11 +41,11 @@ impl Solid {
                 turned(other.gap(self))
             }
             (Self::OrientedBox { centre, .. }, Self::HalfSpace { normal, offset }) => {
-                let reach = Brick::of(self).map_or(0.0, |brick| brick.reach(normal));
+                let reach = OrientedBox::of(self).map_or(0.0, |cuboid| cuboid.reach(normal));
                 (normal.dot(centre) - offset - reach, normal)
             }
             (Self::Box { .. } | Self::OrientedBox { .. }, _) => {
-                let both = Brick::of(self).zip(Brick::of(other));
+                let both = OrientedBox::of(self).zip(OrientedBox::of(other));
                 let separation = both.map(|(own, other)| own.separation(&other));
                 separation.map_or((f32::INFINITY, Vec3::Y), |found| (found.gap, found.normal))
             }
@@ -68,7 +68,7 @@ impl Solid {
     pub(super) fn nearest_of_segment(&self, from: Vec3, to: Vec3) -> (f32, Vec3, f32) {
         let at = |share: f32| self.distance(from + (to - from) * share);
         let (mut low, mut high) = (0.0f32, 1.0f32);
-        for _ in 0..NARROWINGS {
+        for _ in 0..TERNARY_STEPS {
             let third = (high - low) / 3.0;
             let [left, right] = [low + third, high - third];
             if at(left).0 > at(right).0 {
@@ -111,7 +111,7 @@ mod tests {
             centre,
             half: Vec3::new(1.0, 0.5, 1.0),
         };
-        let bar = |from, to| Solid::Capsule {
+        let capsule = |from, to| Solid::Capsule {
             from,
             to,
             radius: 0.25,
@@ -127,11 +127,11 @@ mod tests {
             -0.1,
             right,
         );
-        let leaning = bar(Vec3::Y, Vec3::new(3.0, 2.0, 0.0));
+        let leaning = capsule(Vec3::Y, Vec3::new(3.0, 2.0, 0.0));
         check(leaning, floor, 0.75, up);
         check(leaning, ball(Vec3::new(-2.0, 1.0, 0.0)), 1.25, right);
         check(
-            bar(Vec3::new(-4.0, 1.5, 0.0), Vec3::new(4.0, 1.5, 0.1)),
+            capsule(Vec3::new(-4.0, 1.5, 0.0), Vec3::new(4.0, 1.5, 0.1)),
             cube(Vec3::ZERO),
             0.75,
             up,
@@ -141,8 +141,8 @@ mod tests {
             [Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 2.0)].map(|way: Vec3| (-way, way));
         let above = |k: Vec3| k + up;
         check(
-            bar(above(along.0), above(along.1)),
-            bar(across.0, across.1),
+            capsule(above(along.0), above(along.1)),
+            capsule(across.0, across.1),
             0.5,
             up,
         );

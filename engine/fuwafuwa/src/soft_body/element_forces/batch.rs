@@ -1,7 +1,7 @@
 //! Batches of elements, and the evaluation of groups of batches in three loops: gradients, stresses, forces.
 
 use super::force_kernel::{
-    BlockView, Moduli, PerLane, Scratch, Uniform, forces, gradient, plain_forces, plain_gradient,
+    BatchView, Moduli, PerLane, Scratch, Uniform, forces, gradient, plain_forces, plain_gradient,
     stress,
 };
 use super::plastic_kernel::{PlasticFlowLimits, PlasticInverseLanes, plastic_stress};
@@ -23,7 +23,7 @@ pub const ALL_LANES: u8 = u8::MAX;
 /// data.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    pub home: BatchKey,
+    pub key: BatchKey,
     pub elements: [u32; LANES],
     /// Mask of the lanes without an element.
     pub vacant: u8,
@@ -33,16 +33,16 @@ pub struct Batch {
     /// Rotation of the element in each lane: a quaternion in 3D, cosine and sine in 2D.
     pub rotation: [Eight; 4],
     /// Plastic inverse of the element in each lane; `None` if the material is elastic.
-    pub undone: Option<Box<PlasticInverseLanes>>,
+    pub plastic_inverse: Option<Box<PlasticInverseLanes>>,
     pub node_count: u32,
     /// Index of the first node of the batch in `ElementBatches::nodes`. The forces of the batch begin at D::N
     /// times this index in `ElementBatches::forces`.
-    pub first: u32,
-    /// Start of the class data in `ElementBatches::numbers`, or in `ElementBatches::pooled` for a pooled
-    /// batch.
-    pub element_class: u32,
+    pub first_node: u32,
+    /// Start of the class data in `ElementBatches::class_data`, or in `ElementBatches::pooled_class_data` for
+    /// a pooled batch.
+    pub class_data_start: u32,
     /// Number of values in the class data.
-    pub numbers: u32,
+    pub class_data_len: u32,
 }
 
 /// Properties that the elements of a batch have in common.
@@ -78,15 +78,15 @@ pub struct Shared<'a> {
     pub law: Law,
     pub moduli: &'a [Moduli],
     pub flows: &'a [Option<PlasticFlowLimits>],
-    pub numbers: &'a [f32],
-    pub pooled: &'a [Eight],
+    pub class_data: &'a [f32],
+    pub pooled_class_data: &'a [Eight],
     pub nodes: &'a [u32],
 }
 
 /// Several batches that are evaluated together, and the forces that they write. `first` is the index of the
 /// group's first node in `ElementBatches::nodes`.
 pub struct Group<'a> {
-    pub blocks: &'a mut [Batch],
+    pub batches: &'a mut [Batch],
     pub forces: &'a mut [f32],
     pub first: usize,
     pub shared: Shared<'a>,
@@ -95,32 +95,33 @@ pub struct Group<'a> {
 impl Batch {
     /// Returns the index in `ElementBatches::nodes` after the last node of the batch.
     pub fn end(&self) -> usize {
-        self.first as usize + self.node_count as usize * LANES
+        self.first_node as usize + self.node_count as usize * LANES
     }
 
     /// Returns whether the batch needs no evaluation, because its elements sleep or because it has no
     /// elements.
     #[inline(always)]
     pub fn is_idle(&self) -> bool {
-        self.home.asleep || self.vacant == ALL_LANES
+        self.key.asleep || self.vacant == ALL_LANES
     }
 
     /// Returns the range of the batch's forces within the forces of its group. `first` is the index of the
     /// group's first node in `ElementBatches::nodes`.
     #[inline(always)]
     fn forces<D: Dim>(&self, first: usize) -> Range<usize> {
-        (self.first as usize - first) * D::N..(self.end() - first) * D::N
+        (self.first_node as usize - first) * D::N..(self.end() - first) * D::N
     }
 
     /// Returns the class data of the batch: a slice with one value for all lanes, and a slice with a value
     /// for each lane. At least one of these slices is empty; both are empty for plain elements.
     #[inline(always)]
-    fn element_class<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
-        let places = self.element_class as usize..(self.element_class + self.numbers) as usize;
-        match self.home.kind {
+    fn class_data<'a>(&self, shared: &Shared<'a>) -> (&'a [f32], &'a [Eight]) {
+        let places =
+            self.class_data_start as usize..(self.class_data_start + self.class_data_len) as usize;
+        match self.key.kind {
             BatchKind::Plain => (&[], &[]),
-            BatchKind::Class(_) => (&shared.numbers[places], &[]),
-            BatchKind::Pool(_) => (&[], &shared.pooled[places]),
+            BatchKind::Class(_) => (&shared.class_data[places], &[]),
+            BatchKind::Pool(_) => (&[], &shared.pooled_class_data[places]),
         }
     }
 
@@ -132,10 +133,10 @@ impl Batch {
         shared: &Shared<'a>,
         forces: &'a mut [f32],
         first: usize,
-    ) -> BlockView<'a> {
-        let places = self.first as usize..self.end();
+    ) -> BatchView<'a> {
+        let places = self.first_node as usize..self.end();
         let forces = &mut forces[self.forces::<D>(first)];
-        BlockView {
+        BatchView {
             nodes: &shared.nodes[places.clone()],
             half_size: &self.half_size,
             rotation: &mut self.rotation,
@@ -154,53 +155,53 @@ pub fn evaluate_group<D: Dim, S: Simd>(
     scratch: &mut [Scratch; GROUP],
 ) {
     let Group {
-        blocks,
+        batches,
         forces: all,
         first,
         shared,
     } = group;
     let law = shared.law;
-    for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
-        if block.is_idle() {
+    for (batch, scratch) in batches.iter_mut().zip(&mut *scratch) {
+        if batch.is_idle() {
             continue;
         }
-        let (home, element_class) = (block.home, block.element_class(&shared));
-        let view = block.view::<D>(&shared, all, first);
-        match (home.kind, element_class) {
+        let (key, class_data) = (batch.key, batch.class_data(&shared));
+        let view = batch.view::<D>(&shared, all, first);
+        match (key.kind, class_data) {
             (BatchKind::Plain, _) => plain_gradient::<D, S>(simd, position, &view, scratch),
             (_, (one, [])) => gradient::<D, S>(simd, &Uniform(one), position, &view, scratch),
             (_, (_, each)) => gradient::<D, S>(simd, &PerLane(each), position, &view, scratch),
         }
     }
-    for (block, scratch) in blocks.iter_mut().zip(&mut *scratch) {
-        if block.is_idle() {
+    for (batch, scratch) in batches.iter_mut().zip(&mut *scratch) {
+        if batch.is_idle() {
             continue;
         }
-        let material = block.home.material as usize - 1;
+        let material = batch.key.material as usize - 1;
         let moduli = &shared.moduli[material];
         let Some(Some(flow)) = shared.flows.get(material) else {
-            let mut view = block.view::<D>(&shared, all, first);
+            let mut view = batch.view::<D>(&shared, all, first);
             stress::<D, S>(simd, law, moduli, &mut view, scratch);
             continue;
         };
-        let mut undone = block.undone.take();
-        let mut view = block.view::<D>(&shared, all, first);
-        match &mut undone {
-            Some(undone) => {
-                plastic_stress::<D, S>(simd, (moduli, flow), &mut view, undone, scratch);
+        let mut plastic_inverse = batch.plastic_inverse.take();
+        let mut view = batch.view::<D>(&shared, all, first);
+        match &mut plastic_inverse {
+            Some(plastic_inverse) => {
+                plastic_stress::<D, S>(simd, (moduli, flow), &mut view, plastic_inverse, scratch);
             }
             None => stress::<D, S>(simd, law, moduli, &mut view, scratch),
         }
-        block.undone = undone;
+        batch.plastic_inverse = plastic_inverse;
     }
-    for (block, scratch) in blocks.iter_mut().zip(&*scratch) {
-        if block.is_idle() {
+    for (batch, scratch) in batches.iter_mut().zip(&*scratch) {
+        if batch.is_idle() {
             continue;
         }
-        let (home, element_class) = (block.home, block.element_class(&shared));
-        let moduli = &shared.moduli[home.material as usize - 1];
-        let view = &mut block.view::<D>(&shared, all, first);
-        match (home.kind, element_class) {
+        let (key, class_data) = (batch.key, batch.class_data(&shared));
+        let moduli = &shared.moduli[key.material as usize - 1];
+        let view = &mut batch.view::<D>(&shared, all, first);
+        match (key.kind, class_data) {
             (BatchKind::Plain, _) => plain_forces::<D, S>(simd, moduli, view, scratch),
             (_, (one, [])) => {
                 forces::<D, S>(simd, law, moduli, &Uniform(one), view, scratch);

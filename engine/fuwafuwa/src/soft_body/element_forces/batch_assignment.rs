@@ -1,7 +1,7 @@
 //! Assignment of elements to batches and lanes, and its update after a remodelling.
 
 use super::batch::{ALL_LANES, Batch, BatchKey, BatchKind, VACANT};
-use super::force_kernel::{numbers, numbers_a_node, symmetric};
+use super::force_kernel::{class_data_len, class_data_per_node, symmetric};
 use super::plastic_kernel::{IDENTITY, PlasticInverse, PlasticInverseLanes};
 use super::{ElementBatches, PAD};
 use crate::foundation::dim::Dim;
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 impl<D: Dim> ElementBatches<D> {
-    /// Updates the batches after a remodelling. Takes out the elements `removed`. Adds the elements `seated`,
+    /// Updates the batches after a remodelling. Removes the elements `removed`. Adds `changed_elements`,
     /// or assigns them again if a batch already contains them. `asleep` returns whether an element sleeps.
     /// The cost is proportional to the number of these elements.
     pub fn update(
@@ -24,19 +24,19 @@ impl<D: Dim> ElementBatches<D> {
         mesh: &Mesh<D>,
         grid: &VoxelGrid<D>,
         removed: &[ElementId],
-        seated: &[ElementId],
+        changed_elements: &[ElementId],
         asleep: impl Fn(ElementId) -> bool,
     ) {
-        let newcomer = |&id: &ElementId| {
-            let element = mesh.element(id).expect("seated elements are alive");
+        let pending = |&id: &ElementId| {
+            let element = mesh.element(id).expect("changed elements are alive");
             let material = grid.material(mesh.first_voxel(element));
-            self.newcomer(id, element, material, asleep(id))
+            self.pending(id, element, material, asleep(id))
         };
-        let newcomers: Vec<PendingElement> = seated.iter().map(newcomer).collect();
-        for &id in removed.iter().chain(seated) {
-            self.take_out(id);
+        let pending_elements: Vec<PendingElement> = changed_elements.iter().map(pending).collect();
+        for &id in removed.iter().chain(changed_elements) {
+            self.vacate(id);
         }
-        self.insert_pending(mesh, newcomers);
+        self.insert_pending(mesh, pending_elements);
     }
 
     /// Puts elements to sleep, or wakes them if `asleep` is false. A batch is evaluated as a whole, so its
@@ -47,15 +47,15 @@ impl<D: Dim> ElementBatches<D> {
         let mut changing: BTreeMap<u32, u8> = BTreeMap::new();
         for &id in elements {
             let (index, lane) = self.assigned[id];
-            if self.blocks[index as usize].home.asleep != asleep {
+            if self.batches[index as usize].key.asleep != asleep {
                 *changing.entry(index).or_default() |= 1 << lane;
             }
         }
         let is_few = |lanes: u8| lanes.count_ones() as usize <= LANES / 2;
         let mut movers = Vec::new();
         for (index, lanes) in changing {
-            let block = &self.blocks[index as usize];
-            let rest = !(lanes | block.vacant);
+            let batch = &self.batches[index as usize];
+            let rest = !(lanes | batch.vacant);
             if rest == 0 && !is_few(lanes) {
                 self.change_key(index, asleep);
                 continue;
@@ -63,7 +63,7 @@ impl<D: Dim> ElementBatches<D> {
             let rest = if is_few(rest) { rest } else { 0 };
             for (lanes, asleep) in [(lanes, asleep), (rest, !asleep)] {
                 let lanes = (0..LANES).filter(|lane| lanes >> lane & 1 == 1);
-                movers.extend(lanes.map(|lane| (ElementId(block.elements[lane]), asleep)));
+                movers.extend(lanes.map(|lane| (ElementId(batch.elements[lane]), asleep)));
             }
         }
         self.relocate(mesh, &movers);
@@ -71,15 +71,15 @@ impl<D: Dim> ElementBatches<D> {
 
     /// Sets whether all elements of a batch sleep.
     fn change_key(&mut self, index: u32, asleep: bool) {
-        let block = &mut self.blocks[index as usize];
-        let home = BatchKey {
+        let batch = &mut self.batches[index as usize];
+        let key = BatchKey {
             asleep,
-            ..block.home
+            ..batch.key
         };
-        let before = std::mem::replace(&mut block.home, home);
+        let before = std::mem::replace(&mut batch.key, key);
         let open = self.open.get_mut(&before);
         if open.is_some_and(|open| open.remove(&index)) {
-            self.open.entry(home).or_default().insert(index);
+            self.open.entry(key).or_default().insert(index);
         }
     }
 
@@ -89,22 +89,22 @@ impl<D: Dim> ElementBatches<D> {
         let state = |&(id, asleep): &(ElementId, bool)| {
             let element = mesh.element(id).expect("only live elements sleep or wake");
             let (index, lane) = self.assigned[id];
-            let block = &self.blocks[index as usize];
-            let newcomer = self.newcomer(id, element, block.home.material, asleep);
+            let batch = &self.batches[index as usize];
+            let pending = self.pending(id, element, batch.key.material, asleep);
             let forces = (0..element.nodes.len()).map(|node| self.force_range(index, lane, node));
             let forces: Vec<f32> = forces
                 .flat_map(|place| &self.forces[place])
                 .copied()
                 .collect();
-            (newcomer, block.inverted >> lane & 1, forces)
+            (pending, batch.inverted >> lane & 1, forces)
         };
         let states: Vec<(PendingElement, u8, Vec<f32>)> = movers.iter().map(state).collect();
-        movers.iter().for_each(|&(id, _)| self.take_out(id));
-        let newcomers = states.iter().map(|(newcomer, ..)| *newcomer);
-        self.insert_pending(mesh, newcomers.collect());
+        movers.iter().for_each(|&(id, _)| self.vacate(id));
+        let pending_elements = states.iter().map(|(pending, ..)| *pending);
+        self.insert_pending(mesh, pending_elements.collect());
         for (PendingElement { id, .. }, inverted, forces) in states {
             let (index, lane) = self.assigned[id];
-            self.blocks[index as usize].inverted |= inverted << lane;
+            self.batches[index as usize].inverted |= inverted << lane;
             for (node, force) in forces.chunks_exact(D::N).enumerate() {
                 let place = self.force_range(index, lane, node);
                 self.forces[place].copy_from_slice(force);
@@ -113,7 +113,7 @@ impl<D: Dim> ElementBatches<D> {
     }
 
     /// Returns an element with its rotation and plastic inverse, ready to be added to a batch.
-    fn newcomer<'a>(
+    fn pending<'a>(
         &self,
         id: ElementId,
         element: &'a Element,
@@ -126,32 +126,35 @@ impl<D: Dim> ElementBatches<D> {
             material,
             asleep,
             rotation: self.rotation_of(id),
-            undone: self.plastic_inverse(id).unwrap_or(IDENTITY),
+            plastic_inverse: self.plastic_inverse(id).unwrap_or(IDENTITY),
         }
     }
 
     /// Adds elements that no batch contains, and updates for each of their nodes where the forces on the node
     /// are stored.
-    fn insert_pending(&mut self, mesh: &Mesh<D>, newcomers: Vec<PendingElement>) {
-        let nodes = newcomers
+    fn insert_pending(&mut self, mesh: &Mesh<D>, pending_elements: Vec<PendingElement>) {
+        let nodes = pending_elements
             .iter()
-            .flat_map(|newcomer| newcomer.element.nodes.iter().copied());
+            .flat_map(|pending| pending.element.nodes.iter().copied());
         let nodes = ascending(nodes, mesh.node_capacity());
         let mut classes: BTreeMap<(bool, u8, u32), Vec<PendingElement>> = BTreeMap::new();
-        for newcomer in newcomers {
+        for pending in pending_elements {
             let PendingElement {
                 asleep,
                 material,
                 element,
                 ..
-            } = newcomer;
+            } = pending;
             let class = classes
                 .entry((asleep, material, element.element_class))
                 .or_default();
-            class.push(newcomer);
+            class.push(pending);
         }
-        for newcomers in classes.values() {
-            self.insert_class(mesh.element_class(newcomers[0].element), newcomers);
+        for pending_elements in classes.values() {
+            self.insert_class(
+                mesh.element_class(pending_elements[0].element),
+                pending_elements,
+            );
         }
         self.slots.resize(mesh.node_capacity(), [0; 8]);
         for node in nodes {
@@ -166,16 +169,16 @@ impl<D: Dim> ElementBatches<D> {
     /// Returns the range of `forces` that holds the force of an element on one of its nodes. The element is
     /// given by the index of its batch and its lane; `node` is the number of the node within the element.
     pub(super) fn force_range(&self, index: u32, lane: u8, node: usize) -> Range<usize> {
-        let first = self.blocks[index as usize].first as usize;
+        let first = self.batches[index as usize].first_node as usize;
         let place = (first + node * LANES + lane as usize) * D::N;
         place..place + D::N
     }
 
     /// Returns the index in `forces` at which the force of an element on a node begins.
     pub(super) fn force_index(&self, id: ElementId, node: NodeId) -> u32 {
-        let (block, lane) = self.assigned[id];
-        let block = &self.blocks[block as usize];
-        let first = block.first as usize + lane as usize;
+        let (batch, lane) = self.assigned[id];
+        let batch = &self.batches[batch as usize];
+        let first = batch.first_node as usize + lane as usize;
         let mut lane_nodes = self.nodes[first..].iter().step_by(LANES);
         let place = lane_nodes
             .position(|&other| other == node.0)
@@ -183,7 +186,7 @@ impl<D: Dim> ElementBatches<D> {
         ((first + place * LANES) * D::N) as u32
     }
 
-    fn take_out(&mut self, id: ElementId) {
+    fn vacate(&mut self, id: ElementId) {
         let Some(&(index, lane)) = self.assigned.get(id.index()) else {
             return;
         };
@@ -191,13 +194,13 @@ impl<D: Dim> ElementBatches<D> {
             return;
         }
         self.assigned[id] = (VACANT, 0);
-        let block = &mut self.blocks[index as usize];
-        block.elements[lane as usize] = VACANT;
-        block.vacant |= 1 << lane;
-        let open = self.open.entry(block.home).or_default();
-        if block.vacant == ALL_LANES {
+        let batch = &mut self.batches[index as usize];
+        batch.elements[lane as usize] = VACANT;
+        batch.vacant |= 1 << lane;
+        let open = self.open.entry(batch.key).or_default();
+        if batch.vacant == ALL_LANES {
             open.remove(&index);
-            let kind = (block.node_count, block.home.is_pool());
+            let kind = (batch.node_count, batch.key.is_pool());
             self.empty.entry(kind).or_default().push(index);
         } else {
             open.insert(index);
@@ -207,144 +210,150 @@ impl<D: Dim> ElementBatches<D> {
     /// Adds elements of one class and material that are all asleep or all awake. They first fill vacant lanes
     /// in batches of the class. Then each eight elements get a new batch of the class. The last elements,
     /// fewer than eight, join pooled batches, except plain elements, which are never pooled.
-    fn insert_class(&mut self, element_class: &ElementClass<D>, mut newcomers: &[PendingElement]) {
+    fn insert_class(
+        &mut self,
+        element_class: &ElementClass<D>,
+        mut pending_elements: &[PendingElement],
+    ) {
         let PendingElement {
             element,
             material,
             asleep,
             ..
-        } = newcomers[0];
+        } = pending_elements[0];
         let class = element.element_class;
         let is_plain = element_class.is_plain() && self.law == Law::CorotationalVem;
-        let home = |kind: BatchKind| BatchKey {
+        let key = |kind: BatchKind| BatchKey {
             kind,
             material,
             asleep,
         };
-        let own = home(match is_plain {
+        let own = key(match is_plain {
             true => BatchKind::Plain,
             false => BatchKind::Class(class),
         });
         let count = element_class.slots.len() as u32;
-        let numbers = numbers_of(self.law, element_class);
-        while let Some((newcomer, others)) = newcomers.split_first() {
+        let class_data = class_data_of(self.law, element_class);
+        while let Some((pending, others)) = pending_elements.split_first() {
             let open = self.open.get(&own).and_then(|open| open.first().copied());
             let index = match open {
                 Some(index) => index,
-                None if is_plain || newcomers.len() >= LANES => {
-                    let index = self.empty_block(own, count);
-                    self.blocks[index as usize].element_class = self.stencil_of(class, &numbers);
+                None if is_plain || pending_elements.len() >= LANES => {
+                    let index = self.empty_batch(own, count);
+                    self.batches[index as usize].class_data_start =
+                        self.class_data_start(class, &class_data);
                     index
                 }
                 None => {
-                    let pool = home(BatchKind::Pool(count));
+                    let pool = key(BatchKind::Pool(count));
                     let open = self.open.get(&pool).and_then(|open| open.first().copied());
-                    open.unwrap_or_else(|| self.empty_block(pool, count))
+                    open.unwrap_or_else(|| self.empty_batch(pool, count))
                 }
             };
-            self.assign(index, newcomer, &numbers);
-            newcomers = others;
+            self.assign(index, pending, &class_data);
+            pending_elements = others;
         }
     }
 
     /// Returns the index of a batch without elements, for elements with `count` nodes. Reuses such a batch or
     /// creates one.
-    fn empty_block(&mut self, home: BatchKey, count: u32) -> u32 {
-        let kind = (count, home.is_pool());
+    fn empty_batch(&mut self, key: BatchKey, count: u32) -> u32 {
+        let kind = (count, key.is_pool());
         if let Some(index) = self.empty.get_mut(&kind).and_then(Vec::pop) {
-            let undone = self.undone_in(home);
-            let block = &mut self.blocks[index as usize];
-            (block.home, block.undone) = (home, undone);
+            let plastic_inverse = self.new_plastic_inverse(key);
+            let batch = &mut self.batches[index as usize];
+            (batch.key, batch.plastic_inverse) = (key, plastic_inverse);
             return index;
         }
         let first = self.nodes.len() as u32;
-        let element_class = self.pooled.len() as u32;
+        let class_data_start = self.pooled_class_data.len() as u32;
         let rows = self.nodes.len() + count as usize * LANES;
         self.nodes.resize(rows, VACANT);
         self.forces.resize(rows * D::N + PAD, 0.0);
-        if home.is_pool() {
-            let length = self.pooled.len() + numbers::<D>(count as usize);
-            self.pooled.resize(length, [0.0; LANES]);
+        if key.is_pool() {
+            let length = self.pooled_class_data.len() + class_data_len::<D>(count as usize);
+            self.pooled_class_data.resize(length, [0.0; LANES]);
         }
-        let undone = self.undone_in(home);
-        self.blocks.push(Batch {
-            home,
-            undone,
+        let plastic_inverse = self.new_plastic_inverse(key);
+        self.batches.push(Batch {
+            key,
+            plastic_inverse,
             elements: [VACANT; LANES],
             vacant: ALL_LANES,
             inverted: 0,
             half_size: [self.voxel_size; LANES],
             rotation: [[0.0; LANES]; 4],
             node_count: count,
-            first,
-            element_class,
-            numbers: numbers::<D>(count as usize) as u32,
+            first_node: first,
+            class_data_start,
+            class_data_len: class_data_len::<D>(count as usize) as u32,
         });
-        self.blocks.len() as u32 - 1
+        self.batches.len() as u32 - 1
     }
 
     /// Returns plastic inverses without deformation for a new batch; `None` if the material is elastic.
-    fn undone_in(&self, home: BatchKey) -> Option<Box<PlasticInverseLanes>> {
-        let flow = self.flows.get(home.material as usize - 1);
+    fn new_plastic_inverse(&self, key: BatchKey) -> Option<Box<PlasticInverseLanes>> {
+        let flow = self.flows.get(key.material as usize - 1);
         flow.copied().flatten().map(|_| PlasticInverseLanes::none())
     }
 
-    /// Returns the start in `self.numbers` of the data of an element class. Appends the data `numbers` if the
+    /// Returns the start in `self.class_data` of the data of an element class. Appends `class_data` if the
     /// class has none there yet.
-    fn stencil_of(&mut self, class: u32, numbers: &[f32]) -> u32 {
-        let all = &mut self.numbers;
-        *self.element_classes.entry(class).or_insert_with(|| {
-            all.extend_from_slice(numbers);
-            (all.len() - numbers.len()) as u32
+    fn class_data_start(&mut self, class: u32, class_data: &[f32]) -> u32 {
+        let all = &mut self.class_data;
+        *self.class_data_starts.entry(class).or_insert_with(|| {
+            all.extend_from_slice(class_data);
+            (all.len() - class_data.len()) as u32
         })
     }
 
     /// Puts an element into a vacant lane of a batch.
-    fn assign(&mut self, index: u32, newcomer: &PendingElement, numbers: &[f32]) {
-        let block = &mut self.blocks[index as usize];
-        let is_first = block.vacant == ALL_LANES;
-        assert_ne!(block.vacant, 0, "open batches have vacant lanes");
-        let lane = block.vacant.trailing_zeros() as usize;
-        block.vacant &= !(1 << lane);
-        let is_last = block.vacant == 0;
+    fn assign(&mut self, index: u32, pending: &PendingElement, class_data: &[f32]) {
+        let batch = &mut self.batches[index as usize];
+        let is_first = batch.vacant == ALL_LANES;
+        assert_ne!(batch.vacant, 0, "open batches have vacant lanes");
+        let lane = batch.vacant.trailing_zeros() as usize;
+        batch.vacant &= !(1 << lane);
+        let is_last = batch.vacant == 0;
         // The first element of a batch is copied into all lanes. The vacant lanes, which are computed but not
         // used, then have finite values.
         let lanes = if is_first { 0..LANES } else { lane..lane + 1 };
-        let half_size = 0.5 * self.voxel_size * newcomer.element.cell.width() as f32;
-        let first = block.first as usize;
+        let half_size = 0.5 * self.voxel_size * pending.element.cell.width() as f32;
+        let first = batch.first_node as usize;
         for lane in lanes {
-            block.half_size[lane] = half_size;
+            batch.half_size[lane] = half_size;
             for part in 0..4 {
-                block.rotation[part][lane] = newcomer.rotation[part];
+                batch.rotation[part][lane] = pending.rotation[part];
             }
-            if let Some(undone) = &mut block.undone {
-                undone.set(lane, newcomer.undone);
+            if let Some(plastic_inverse) = &mut batch.plastic_inverse {
+                plastic_inverse.set(lane, pending.plastic_inverse);
             }
-            for (place, &node) in newcomer.element.nodes.iter().enumerate() {
+            for (place, &node) in pending.element.nodes.iter().enumerate() {
                 self.nodes[first + place * LANES + lane] = node.0;
             }
-            if block.home.is_pool() {
-                let pooled = &mut self.pooled[block.element_class as usize..];
-                for (all, &number) in pooled.iter_mut().zip(numbers) {
+            if batch.key.is_pool() {
+                let pooled_class_data =
+                    &mut self.pooled_class_data[batch.class_data_start as usize..];
+                for (all, &number) in pooled_class_data.iter_mut().zip(class_data) {
                     all[lane] = number;
                 }
             }
         }
         // Clears the forces that the previous element of this lane has left, because fracture may read them
         // before the next evaluation.
-        for place in 0..newcomer.element.nodes.len() {
+        for place in 0..pending.element.nodes.len() {
             let force = (first + place * LANES + lane) * D::N;
             self.forces[force..][..D::N].fill(0.0);
         }
-        block.elements[lane] = newcomer.id.0;
-        block.inverted &= !(1 << lane);
-        let open = self.open.entry(block.home).or_default();
+        batch.elements[lane] = pending.id.0;
+        batch.inverted &= !(1 << lane);
+        let open = self.open.entry(batch.key).or_default();
         if is_last {
             open.remove(&index);
         } else {
             open.insert(index);
         }
-        let id = newcomer.id;
+        let id = pending.id;
         let capacity = self.assigned.len().max(id.index() + 1);
         self.assigned.resize(capacity, (VACANT, 0));
         self.assigned[id] = (index, lane as u8);
@@ -359,11 +368,11 @@ struct PendingElement<'a> {
     material: u8,
     asleep: bool,
     rotation: [f32; 4],
-    undone: PlasticInverse,
+    plastic_inverse: PlasticInverse,
 }
 
 /// Returns the data of an element class in single precision, in the order that the kernel reads.
-fn numbers_of<D: Dim>(law: Law, element_class: &ElementClass<D>) -> Vec<f32> {
+fn class_data_of<D: Dim>(law: Law, element_class: &ElementClass<D>) -> Vec<f32> {
     let count = element_class.slots.len();
     let mut mean = [0.0; 3];
     for offset in &element_class.offsets {
@@ -371,10 +380,10 @@ fn numbers_of<D: Dim>(law: Law, element_class: &ElementClass<D>) -> Vec<f32> {
             mean[axis] += offset[axis] / count as f64;
         }
     }
-    let mut all = vec![0.0; numbers::<D>(count)];
+    let mut all = vec![0.0; class_data_len::<D>(count)];
     let mut total = 0.0;
     for k in 0..count {
-        let node = &mut all[numbers_a_node::<D>() * k..][..numbers_a_node::<D>()];
+        let node = &mut all[class_data_per_node::<D>() * k..][..class_data_per_node::<D>()];
         let w = element_class.volumes[k];
         for axis in 0..D::N {
             let centred = element_class.offsets[k][axis] - mean[axis];
@@ -399,7 +408,7 @@ fn numbers_of<D: Dim>(law: Law, element_class: &ElementClass<D>) -> Vec<f32> {
                 element_class.volumes[k] * element_class.offsets[k][i] * element_class.offsets[k][j]
             };
             let spread: f64 = (0..count).map(term).sum();
-            all[numbers_a_node::<D>() * count + symmetric::<D>(i, j)] = spread as f32;
+            all[class_data_per_node::<D>() * count + symmetric::<D>(i, j)] = spread as f32;
         }
     }
     let volume = match law {

@@ -27,7 +27,7 @@ use crate::soft_body::element_law::{Elasticity, Law, MIN_VOLUME_RATIO};
 use fearless_simd::prelude::*;
 
 /// Data of one batch for the kernel.
-pub struct BlockView<'a> {
+pub struct BatchView<'a> {
     /// Node ids of the batch. The id of node k of the element in lane l is at k · LANES + l.
     pub nodes: &'a [u32],
     pub half_size: &'a Eight,
@@ -63,7 +63,7 @@ impl Moduli {
 /// product w r of volume weight and rest offset, and w for each node. Then follow the upper triangle of W = Σ
 /// w r rᵀ, the inverse volume 1/V, and a stiffness: of the hourglass modes, or of the springs of
 /// [`Law::Endo2004`]. `get` returns the value at an index, for all lanes.
-pub trait Stencils {
+pub trait ClassData {
     fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S>;
 }
 
@@ -73,14 +73,14 @@ pub struct Uniform<'a>(pub &'a [f32]);
 /// Class data of a batch in which each lane may have a different class.
 pub struct PerLane<'a>(pub &'a [Eight]);
 
-impl Stencils for Uniform<'_> {
+impl ClassData for Uniform<'_> {
     #[inline(always)]
     fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S> {
         splat(simd, self.0[index])
     }
 }
 
-impl Stencils for PerLane<'_> {
+impl ClassData for PerLane<'_> {
     #[inline(always)]
     fn get<S: Simd>(&self, simd: S, index: usize) -> Lanes<S> {
         load(simd, &self.0[index])
@@ -88,13 +88,13 @@ impl Stencils for PerLane<'_> {
 }
 
 /// Number of values per node in the data of an element class.
-pub const fn numbers_a_node<D: Dim>() -> usize {
+pub const fn class_data_per_node<D: Dim>() -> usize {
     2 * D::N + 1
 }
 
 /// Number of values in the data of an element class with `nodes` nodes.
-pub const fn numbers<D: Dim>(nodes: usize) -> usize {
-    numbers_a_node::<D>() * nodes + D::N * (D::N + 1) / 2 + 2
+pub const fn class_data_len<D: Dim>(nodes: usize) -> usize {
+    class_data_per_node::<D>() * nodes + D::N * (D::N + 1) / 2 + 2
 }
 
 /// Intermediate results of one batch, which one loop of the kernel passes to the next.
@@ -126,7 +126,7 @@ impl Scratch {
 pub fn plain_gradient<D: Dim, S: Simd>(
     simd: S,
     position: &[Row],
-    view: &BlockView,
+    view: &BatchView,
     scratch: &mut Scratch,
 ) {
     let zero = splat(simd, 0.0);
@@ -169,14 +169,14 @@ pub fn plain_gradient<D: Dim, S: Simd>(
 #[inline(always)]
 pub fn gradient<D: Dim, S: Simd>(
     simd: S,
-    element_classes: &impl Stencils,
+    class_data: &impl ClassData,
     position: &[Row],
-    view: &BlockView,
+    view: &BatchView,
     scratch: &mut Scratch,
 ) {
     let zero = splat(simd, 0.0);
     let count = view.nodes.len() / LANES;
-    let a_node = numbers_a_node::<D>();
+    let a_node = class_data_per_node::<D>();
     let origin = gather(simd, position, places(view.nodes, 0));
     for i in 0..D::N {
         zero.store_array(&mut scratch.x[0][i]);
@@ -186,7 +186,7 @@ pub fn gradient<D: Dim, S: Simd>(
     let mut centre = [zero; 3];
     for node in 1..count {
         let at = gather(simd, position, places(view.nodes, node));
-        let w = element_classes.get(simd, a_node * node + 2 * D::N);
+        let w = class_data.get(simd, a_node * node + 2 * D::N);
         let mut x = [zero; 3];
         for i in 0..D::N {
             x[i] = at[i] - origin[i];
@@ -194,15 +194,15 @@ pub fn gradient<D: Dim, S: Simd>(
             centre[i] += x[i] * w;
         }
         for j in 0..D::N {
-            let b = element_classes.get(simd, a_node * node + j);
-            let wr = element_classes.get(simd, a_node * node + D::N + j);
+            let b = class_data.get(simd, a_node * node + j);
+            let wr = class_data.get(simd, a_node * node + D::N + j);
             for i in 0..D::N {
                 f[i][j] += x[i] * b;
                 moment[i][j] += x[i] * wr;
             }
         }
     }
-    let inverse_volume = element_classes.get(simd, numbers::<D>(count) - 2);
+    let inverse_volume = class_data.get(simd, class_data_len::<D>(count) - 2);
     let scale = inverse_volume / load(simd, view.half_size);
     for i in 0..D::N {
         for j in 0..D::N {
@@ -219,7 +219,7 @@ pub fn stress<D: Dim, S: Simd>(
     simd: S,
     law: Law,
     moduli: &Moduli,
-    view: &mut BlockView,
+    view: &mut BatchView,
     scratch: &mut Scratch,
 ) {
     let mut f = [[splat(simd, 0.0); 3]; 3];
@@ -245,7 +245,7 @@ pub fn stress<D: Dim, S: Simd>(
 pub fn plain_forces<D: Dim, S: Simd>(
     simd: S,
     moduli: &Moduli,
-    view: &mut BlockView,
+    view: &mut BatchView,
     scratch: &Scratch,
 ) {
     let half = load(simd, view.half_size);
@@ -296,28 +296,28 @@ pub fn forces<D: Dim, S: Simd>(
     simd: S,
     law: Law,
     moduli: &Moduli,
-    element_classes: &impl Stencils,
-    view: &mut BlockView,
+    class_data: &impl ClassData,
+    view: &mut BatchView,
     scratch: &Scratch,
 ) {
     let zero = splat(simd, 0.0);
     let count = view.nodes.len() / LANES;
-    let a_node = numbers_a_node::<D>();
+    let a_node = class_data_per_node::<D>();
     let half = load(simd, view.half_size);
     let (mut pull, mut shear) = ([[zero; 3]; 3], [[zero; 3]; 3]);
     let stiffness;
-    let own_stiffness = element_classes.get(simd, numbers::<D>(count) - 1);
+    let own_stiffness = class_data.get(simd, class_data_len::<D>(count) - 1);
     if law == Law::CorotationalVem {
         let (plain_spring, area) = scales::<D, S>(simd, moduli, half);
         let spring = plain_spring * own_stiffness;
-        let inverse_volume = element_classes.get(simd, numbers::<D>(count) - 2);
+        let inverse_volume = class_data.get(simd, class_data_len::<D>(count) - 2);
         let (bend, skew) = (spring * half, spring * inverse_volume);
         stiffness = spring;
         for i in 0..D::N {
             for j in 0..D::N {
                 let mut bent = zero;
                 for k in 0..D::N {
-                    let spread = element_classes.get(simd, a_node * count + symmetric::<D>(k, j));
+                    let spread = class_data.get(simd, a_node * count + symmetric::<D>(k, j));
                     bent += load(simd, &scratch.f[i][k]) * spread;
                 }
                 let moment = load(simd, &scratch.moment[i][j]);
@@ -338,7 +338,7 @@ pub fn forces<D: Dim, S: Simd>(
         }
     }
     for node in 0..count {
-        let spring = stiffness * element_classes.get(simd, a_node * node + 2 * D::N);
+        let spring = stiffness * class_data.get(simd, a_node * node + 2 * D::N);
         let mut force = [zero; 3];
         for i in 0..D::N {
             let centre = load(simd, &scratch.centre[i]);
@@ -346,8 +346,8 @@ pub fn forces<D: Dim, S: Simd>(
             force[i] = spring * (centre - x);
         }
         for j in 0..D::N {
-            let b = element_classes.get(simd, a_node * node + j);
-            let wr = element_classes.get(simd, a_node * node + D::N + j);
+            let b = class_data.get(simd, a_node * node + j);
+            let wr = class_data.get(simd, a_node * node + D::N + j);
             for i in 0..D::N {
                 force[i] += pull[i][j] * b + shear[i][j] * wr;
             }

@@ -13,7 +13,7 @@ impl<D: Dim> HashState for ElementBatches<D> {
         // changes, and do not affect later states of the simulation.
         let Self {
             law,
-            blocks,
+            batches,
             assigned,
             forces,
             moduli: _,
@@ -21,9 +21,9 @@ impl<D: Dim> HashState for ElementBatches<D> {
             voxel_size: _,
             open: _,
             empty: _,
-            element_classes: _,
-            numbers: _,
-            pooled: _,
+            class_data_starts: _,
+            class_data: _,
+            pooled_class_data: _,
             slots: _,
             nodes: _,
             scratch: _,
@@ -39,16 +39,16 @@ impl<D: Dim> HashState for ElementBatches<D> {
             let Batch {
                 inverted,
                 rotation,
-                undone: _,
+                plastic_inverse: _,
                 node_count,
-                home: _,
+                key: _,
                 elements: _,
                 vacant: _,
                 half_size: _,
-                first: _,
-                element_class: _,
-                numbers: _,
-            } = &blocks[index as usize];
+                first_node: _,
+                class_data_start: _,
+                class_data_len: _,
+            } = &batches[index as usize];
             for part in &rotation[..parts::<D>()] {
                 part[lane as usize].hash_state(hash);
             }
@@ -57,8 +57,10 @@ impl<D: Dim> HashState for ElementBatches<D> {
                 own.iter().for_each(|force| force.hash_state(hash));
             }
             (inverted >> lane & 1 == 1).hash_state(hash);
-            let undone = self.plastic_inverse(id);
-            undone.filter(|undone| *undone != IDENTITY).hash_state(hash);
+            let plastic_inverse = self.plastic_inverse(id);
+            plastic_inverse
+                .filter(|plastic_inverse| *plastic_inverse != IDENTITY)
+                .hash_state(hash);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Plastic flow of a batch, all lanes at once: the formulas of [`crate::soft_body::plasticity`] in single
 //! precision.
 
-use super::force_kernel::{BlockView, Moduli, Scratch, stress_of};
+use super::force_kernel::{BatchView, Moduli, Scratch, stress_of};
 use super::rotation_extraction::{Matrix, turn};
 use crate::foundation::dim::Dim;
 use crate::math::lanes::{Eight, LANES, Lanes, at_least, if_positive, load, splat};
@@ -47,8 +47,8 @@ impl PlasticInverseLanes {
         self.0.map(|row| row.map(|entry| entry[lane]).into())
     }
 
-    pub fn set(&mut self, lane: usize, dent: PlasticInverse) {
-        for (row, numbers) in self.0.iter_mut().zip(dent) {
+    pub fn set(&mut self, lane: usize, plastic_inverse: PlasticInverse) {
+        for (row, numbers) in self.0.iter_mut().zip(plastic_inverse) {
             for (entry, number) in row.iter_mut().zip(numbers.to_array()) {
                 entry[lane] = number;
             }
@@ -63,13 +63,13 @@ impl PlasticInverseLanes {
 pub fn plastic_stress<D: Dim, S: Simd>(
     simd: S,
     material: (&Moduli, &PlasticFlowLimits),
-    view: &mut BlockView,
-    undone: &mut PlasticInverseLanes,
+    view: &mut BatchView,
+    plastic_inverse: &mut PlasticInverseLanes,
     scratch: &mut Scratch,
 ) {
     simd.vectorize(
         #[inline(always)]
-        || flow_on::<D, S>(simd, material, view, undone, scratch),
+        || flow_on::<D, S>(simd, material, view, plastic_inverse, scratch),
     );
 }
 
@@ -77,8 +77,8 @@ pub fn plastic_stress<D: Dim, S: Simd>(
 fn flow_on<D: Dim, S: Simd>(
     simd: S,
     (moduli, flow): (&Moduli, &PlasticFlowLimits),
-    view: &mut BlockView,
-    undone: &mut PlasticInverseLanes,
+    view: &mut BatchView,
+    plastic_inverse: &mut PlasticInverseLanes,
     scratch: &mut Scratch,
 ) {
     let zero = splat(simd, 0.0);
@@ -86,13 +86,13 @@ fn flow_on<D: Dim, S: Simd>(
     for i in 0..D::N {
         for j in 0..D::N {
             f[i][j] = load(simd, &scratch.f[i][j]);
-            g[i][j] = load(simd, &undone.0[i][j]);
+            g[i][j] = load(simd, &plastic_inverse.0[i][j]);
         }
     }
     let elastic = product::<D, S>(zero, &f, &g);
     let rotation = turn::<D, S>(simd, &elastic, view.rotation);
     let own = stress_of::<D, S>(simd, moduli, &elastic, &rotation, view.inverted);
-    let soft = kneaded_stiffness::<D, S>(simd, &g);
+    let soft = plastic_stiffness_factor::<D, S>(simd, &g);
     for i in 0..D::N {
         for j in 0..D::N {
             let mut sum = zero;
@@ -102,16 +102,16 @@ fn flow_on<D: Dim, S: Simd>(
             (soft * sum).store_array(&mut scratch.stress[i][j]);
         }
     }
-    let next = flown_apart::<D, S>(simd, (moduli, flow), &elastic, &rotation, &g);
+    let next = plastic_flow_outlined::<D, S>(simd, (moduli, flow), &elastic, &rotation, &g);
     for i in 0..D::N {
         for j in 0..D::N {
-            next[i][j].store_array(&mut undone.0[i][j]);
+            next[i][j].store_array(&mut plastic_inverse.0[i][j]);
         }
     }
 }
 
 #[inline(never)]
-fn flown_apart<D: Dim, S: Simd>(
+fn plastic_flow_outlined<D: Dim, S: Simd>(
     simd: S,
     material: (&Moduli, &PlasticFlowLimits),
     elastic: &Matrix<S>,
@@ -120,12 +120,12 @@ fn flown_apart<D: Dim, S: Simd>(
 ) -> Matrix<S> {
     simd.vectorize(
         #[inline(always)]
-        || flown::<D, S>(simd, material, elastic, rotation, g),
+        || plastic_flow::<D, S>(simd, material, elastic, rotation, g),
     )
 }
 
 #[inline(always)]
-fn flown<D: Dim, S: Simd>(
+fn plastic_flow<D: Dim, S: Simd>(
     simd: S,
     (moduli, flow): (&Moduli, &PlasticFlowLimits),
     elastic: &Matrix<S>,
@@ -184,9 +184,9 @@ fn flown<D: Dim, S: Simd>(
     // compared.
     let whole = determinant::<D, S>(elastic);
     let before =
-        kneaded_stiffness::<D, S>(simd, g) * density::<D, S>(simd, moduli, &stretch, whole);
-    let after =
-        kneaded_stiffness::<D, S>(simd, &next) * density::<D, S>(simd, moduli, &eased, whole);
+        plastic_stiffness_factor::<D, S>(simd, g) * density::<D, S>(simd, moduli, &stretch, whole);
+    let after = plastic_stiffness_factor::<D, S>(simd, &next)
+        * density::<D, S>(simd, moduli, &eased, whole);
     // An element flows only if four quantities are positive: the distance to the plastic limit, the decrease
     // of the energy, the excess over the minimum volume ratio, and the excess over the yield strain. Beyond
     // the plastic limit, the decrease of plastic strain takes the place of the distance. A comparison with
@@ -230,7 +230,7 @@ fn density<D: Dim, S: Simd>(
 /// Returns the stiffness factor 1 / λ_max(GᵀG) of elements with plastic inverse G. The largest eigenvalue
 /// λ_max is estimated from the trace and the norm of GᵀG.
 #[inline(always)]
-fn kneaded_stiffness<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
+fn plastic_stiffness_factor<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
     let zero = splat(simd, 0.0);
     let (mut trace, mut norm) = (zero, zero);
     for i in 0..D::N {

@@ -21,14 +21,14 @@ impl<D: Dim> ElementBatches<D> {
         let numbers = |(_, element): (_, &Element)| parts::<D>() + element.nodes.len() * D::N;
         let numbers: usize = mesh.elements().map(numbers).sum();
         let fits = |saved: &SavedElementStates| {
-            let undone = &saved.undone;
-            let is_one = |(id, dent): &(ElementId, PlasticInverse)| {
-                mesh.element(*id).is_some() && is_sound::<D>(dent)
+            let plastic_inverses = &saved.plastic_inverses;
+            let is_one = |(id, plastic_inverse): &(ElementId, PlasticInverse)| {
+                mesh.element(*id).is_some() && is_sound::<D>(plastic_inverse)
             };
             saved.inverted.len() == mesh.element_count()
                 && saved.numbers.len() == numbers
-                && undone.is_sorted_by(|a, b| a.0 < b.0)
-                && undone.iter().all(is_one)
+                && plastic_inverses.is_sorted_by(|a, b| a.0 < b.0)
+                && plastic_inverses.iter().all(is_one)
         };
         self.saved.as_ref().is_some_and(fits)
     }
@@ -45,7 +45,7 @@ impl<D: Dim> ElementBatches<D> {
         let Some(SavedElementStates {
             law,
             numbers,
-            undone,
+            plastic_inverses,
             inverted,
         }) = self.saved.take()
         else {
@@ -55,19 +55,19 @@ impl<D: Dim> ElementBatches<D> {
         self.set_plasticities(plasticities);
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
         self.update(mesh, grid, &[], &all, asleep);
-        for (id, dent) in undone {
-            self.set_plastic_inverse(id, dent);
+        for (id, plastic_inverse) in plastic_inverses {
+            self.set_plastic_inverse(id, plastic_inverse);
         }
         let mut numbers = numbers.into_iter();
         for (&id, inverted) in all.iter().zip(inverted) {
             let (index, lane) = self.assigned[id];
-            let block = &mut self.blocks[index as usize];
-            block.inverted |= u8::from(inverted) << lane;
-            let rotation = block.rotation[..parts::<D>()].iter_mut();
+            let batch = &mut self.batches[index as usize];
+            batch.inverted |= u8::from(inverted) << lane;
+            let rotation = batch.rotation[..parts::<D>()].iter_mut();
             for (part, number) in rotation.zip(numbers.by_ref()) {
                 part[lane as usize] = number;
             }
-            for node in 0..block.node_count as usize {
+            for node in 0..batch.node_count as usize {
                 let place = self.force_range(index, lane, node);
                 let forces = self.forces[place].iter_mut();
                 for (force, number) in forces.zip(numbers.by_ref()) {
@@ -79,24 +79,26 @@ impl<D: Dim> ElementBatches<D> {
 
     fn to_be_saved(&self) -> SavedElementStates {
         let known = self.assigned.ids();
-        let undone = known.filter_map(|id| Some((id, self.plastic_inverse(id)?)));
+        let plastic_inverses = known.filter_map(|id| Some((id, self.plastic_inverse(id)?)));
         let mut saved = SavedElementStates {
             law: self.law,
             numbers: Vec::new(),
-            undone: undone.filter(|(_, dent)| *dent != IDENTITY).collect(),
+            plastic_inverses: plastic_inverses
+                .filter(|(_, plastic_inverse)| *plastic_inverse != IDENTITY)
+                .collect(),
             inverted: Vec::new(),
         };
         let assigned = self.assigned.iter();
         for &(index, lane) in assigned.filter(|&&(index, _)| index != VACANT) {
-            let block = &self.blocks[index as usize];
-            let rotation = block.rotation[..parts::<D>()].iter();
+            let batch = &self.batches[index as usize];
+            let rotation = batch.rotation[..parts::<D>()].iter();
             let rotation = rotation.map(|part| part[lane as usize]);
             saved.numbers.extend(rotation);
-            for node in 0..block.node_count as usize {
+            for node in 0..batch.node_count as usize {
                 let place = self.force_range(index, lane, node);
                 saved.numbers.extend_from_slice(&self.forces[place]);
             }
-            saved.inverted.push(block.inverted >> lane & 1 == 1);
+            saved.inverted.push(batch.inverted >> lane & 1 == 1);
         }
         saved
     }
@@ -104,14 +106,14 @@ impl<D: Dim> ElementBatches<D> {
 
 /// Returns whether a plastic inverse is valid: it preserves volume within 10 %, has no entry of 100 or more,
 /// and leaves the third axis unchanged in 2D.
-fn is_sound<D: Dim>(dent: &PlasticInverse) -> bool {
-    let [x, y, z] = *dent;
+fn is_sound<D: Dim>(plastic_inverse: &PlasticInverse) -> bool {
+    let [x, y, z] = *plastic_inverse;
     let volume = x.dot(y.cross(z));
     let is_flat = (D::N..3).all(|axis| {
         let column = Vec3::new(x[axis], y[axis], z[axis]);
-        dent[axis] == IDENTITY[axis] && column == IDENTITY[axis]
+        plastic_inverse[axis] == IDENTITY[axis] && column == IDENTITY[axis]
     });
-    let most = dent
+    let most = plastic_inverse
         .iter()
         .flat_map(|row| row.to_array())
         .fold(0.0f32, |most, k| most.max(k.abs()));
@@ -127,8 +129,8 @@ impl<D: Dim> Serialize for ElementBatches<D> {
 impl<'a, D: Dim> Deserialize<'a> for ElementBatches<D> {
     fn deserialize<S: Deserializer<'a>>(deserializer: S) -> Result<Self, S::Error> {
         let saved = SavedElementStates::deserialize(deserializer)?;
-        let mut blocks = Self::new(saved.law, &[], 0.0);
-        blocks.saved = Some(saved);
-        Ok(blocks)
+        let mut batches = Self::new(saved.law, &[], 0.0);
+        batches.saved = Some(saved);
+        Ok(batches)
     }
 }

@@ -13,7 +13,7 @@ pub struct SavedElementStates {
     /// nodes [N], in the order of the nodes.
     pub numbers: Vec<f32>,
     /// Plastic inverses that differ from the identity, by ascending element id.
-    pub undone: Vec<(ElementId, PlasticInverse)>,
+    pub plastic_inverses: Vec<(ElementId, PlasticInverse)>,
     /// For each element, whether its volume was negative in the last evaluation.
     pub inverted: Vec<bool>,
 }

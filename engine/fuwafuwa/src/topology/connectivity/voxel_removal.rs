@@ -6,7 +6,7 @@ use crate::foundation::dim::{Dim, Point};
 impl<D: Dim> Connectivity<D> {
     /// Removes voxels. At each lattice point, the removed voxels must make up whole groups, so that the
     /// groups of the remaining voxels stay valid.
-    pub(crate) fn take_out(&mut self, voxels: &[Point]) {
+    pub(crate) fn remove_voxels(&mut self, voxels: &[Point]) {
         for &voxel in voxels {
             for octant in 0..D::CORNERS {
                 // Lattice point that has the voxel in its octant `octant`.

@@ -13,7 +13,7 @@ impl<D: Dim> Mesh<D> {
     /// Gives an element the nodes and the class that follow from the connectivity and the neighbouring
     /// elements. Returns false if the nodes were the same before. If `past` is given, it receives for each
     /// new node the old nodes from which the state of the new node is interpolated.
-    pub(super) fn seat(
+    pub(super) fn assign_nodes(
         &mut self,
         id: ElementId,
         connectivity: &Connectivity<D>,
@@ -21,13 +21,13 @@ impl<D: Dim> Mesh<D> {
     ) -> Result<bool, InvariantViolation> {
         let (cell, children) = (self.alive(id).cell, self.alive(id).children);
         let corners = cell_corners::<D>();
-        let (mut slots, mut seated, mut count) = (0u32, [NodeId(0); 27], 0);
+        let (mut slots, mut nodes, mut count) = (0u32, [NodeId(0); 27], 0);
         for slot in 0..D::SLOTS {
             let is_corner = corners >> slot & 1 == 1;
             if !is_corner && cell.level == 0 {
                 continue;
             }
-            let Some((at, octant)) = seat_of::<D>(cell, children, slot) else {
+            let Some((at, octant)) = slot_point::<D>(cell, children, slot) else {
                 continue;
             };
             let node = Node {
@@ -43,12 +43,12 @@ impl<D: Dim> Mesh<D> {
                 past.inherit(self, node, voxel_around::<D>(at, octant), at)?;
             }
             slots |= 1 << slot;
-            seated[count] = node;
+            nodes[count] = node;
             count += 1;
         }
-        let seated = &seated[..count];
+        let nodes = &nodes[..count];
         // Equal nodes have equal slots, so the class is the same, too.
-        if self.alive(id).nodes == seated {
+        if self.alive(id).nodes == nodes {
             return Ok(false);
         }
         let element_class = self.class(children, slots)?;
@@ -56,11 +56,11 @@ impl<D: Dim> Mesh<D> {
             cell,
             children,
             element_class,
-            nodes: seated.to_vec(),
+            nodes: nodes.to_vec(),
         };
         let old = self.elements[id].replace(element);
-        let old = old.expect("seated elements are alive");
-        for &node in seated {
+        let old = old.expect("changed elements are alive");
+        for &node in nodes {
             self.carriers[node] += 1;
         }
         for &node in &old.nodes {
@@ -117,7 +117,7 @@ impl<D: Dim> Mesh<D> {
 
 /// Returns the lattice point of a slot, and an octant around this point whose voxel the element contains.
 /// `None` if the slot is not a corner of any filled child.
-fn seat_of<D: Dim>(cell: Cell, children: u8, slot: usize) -> Option<(Point, usize)> {
+fn slot_point<D: Dim>(cell: Cell, children: u8, slot: usize) -> Option<(Point, usize)> {
     let steps = slot_at(slot);
     let touching = children & TOUCHING[slot];
     if touching == 0 {

@@ -89,7 +89,7 @@ impl<D: Dim> Mesh<D> {
             true => Ok(()),
             false => Err(InvariantViolation(format!("inconsistent {what}"))),
         };
-        let tables = self.places == fresh.places
+        let tables = self.cell_indexing == fresh.cell_indexing
             && self.dense_surface == fresh.dense_surface
             && self.carriers.len() == self.nodes.len()
             && self.owners.len() == fresh.owners.len();
@@ -131,16 +131,16 @@ impl<D: Dim> Mesh<D> {
 
         let ends = self
             .by_cell
-            .is_valid(self.places.count(), self.elements.len())
+            .is_valid(self.cell_indexing.count(), self.elements.len())
             && self
                 .by_point
                 .is_valid(connectivity.point_count(), self.nodes.len());
         ensure(ends, "lists of ids")?;
-        let at = |cell| self.places.index(cell).into_iter();
-        let listed = |cell| at(cell).flat_map(|place| self.by_cell.at(place));
+        let at = |cell| self.cell_indexing.index(cell).into_iter();
+        let listed = |cell| at(cell).flat_map(|index| self.by_cell.at(index));
         let mut elements = self.elements();
         let found = elements.all(|(id, element)| listed(element.cell).any(|other| other == id));
-        let count = (0..self.places.count()).flat_map(|place| self.by_cell.at(place));
+        let count = (0..self.cell_indexing.count()).flat_map(|index| self.by_cell.at(index));
         ensure(
             found && count.count() == self.element_count(),
             "lists of elements",
@@ -149,7 +149,7 @@ impl<D: Dim> Mesh<D> {
         let found = self.nodes().all(|(id, node)| {
             connectivity.contains(node.at) && beside(node).any(|other| other == id)
         });
-        let count = (0..connectivity.point_count()).flat_map(|place| self.by_point.at(place));
+        let count = (0..connectivity.point_count()).flat_map(|index| self.by_point.at(index));
         ensure(
             found && count.count() == self.node_count(),
             "lists of nodes",

@@ -16,7 +16,7 @@ pub struct Remodelled {
     /// Ids of the removed elements.
     pub removed: Vec<ElementId>,
     /// Ids of the elements that are new or whose nodes have changed, ascending.
-    pub seated: Vec<ElementId>,
+    pub changed_elements: Vec<ElementId>,
     /// New nodes, each with the range in `shares` of the old nodes from which it inherits its state.
     pub inherited: Vec<Inheritance>,
     /// Ids of old nodes with interpolation weights, for all entries of `inherited` in turn.
@@ -93,10 +93,10 @@ impl<D: Dim> Mesh<D> {
             .collect();
         gone.sort_unstable();
         past.removed.sort_unstable_by_key(|element| element.cell);
-        let mut seated = Vec::new();
+        let mut changed_elements = Vec::new();
         for id in self.elements_touched(connectivity, changed, born, &refitted) {
-            if self.seat(id, connectivity, Some(&mut past))? {
-                seated.push(id);
+            if self.assign_nodes(id, connectivity, Some(&mut past))? {
+                changed_elements.push(id);
             }
         }
         let abandoned = past.abandoned(&self.carriers);
@@ -109,7 +109,7 @@ impl<D: Dim> Mesh<D> {
         Ok(Remodelled {
             gone,
             removed,
-            seated,
+            changed_elements,
             inherited: past.inherited,
             shares: past.shares,
             abandoned,
@@ -118,7 +118,7 @@ impl<D: Dim> Mesh<D> {
 
     /// Removes elements, and the nodes that no other element has. Returns the ids of these nodes. The caller
     /// must update grid, connectivity and cell hierarchy.
-    pub(crate) fn take_out(
+    pub(crate) fn remove_elements(
         &mut self,
         connectivity: &Connectivity<D>,
         elements: &[ElementId],
@@ -128,12 +128,12 @@ impl<D: Dim> Mesh<D> {
             let Some(element) = self.elements[id].take() else {
                 continue;
             };
-            if let Some(place) = self.places.index(element.cell) {
-                self.by_cell.remove(place, id);
+            if let Some(index) = self.cell_indexing.index(element.cell) {
+                self.by_cell.remove(index, id);
             }
             for voxel in self.voxels(&element) {
-                if let Some(place) = self.places.index(Cell::of(voxel)) {
-                    self.owners[place] = 0;
+                if let Some(index) = self.cell_indexing.index(Cell::of(voxel)) {
+                    self.owners[index] = 0;
                 }
             }
             for &node in &element.nodes {
@@ -169,8 +169,10 @@ impl<D: Dim> Mesh<D> {
         // Lists each lattice point once, because neighbouring cells have common corners.
         let points = connectivity.each_once(changed.iter().copied().chain(corners));
         let around = |at| self.owners_around(at, D::ALL_CORNERS);
-        let places = refitted.iter().filter_map(|&cell| self.places.index(cell));
-        let inside = places.flat_map(|place| self.by_cell.at(place));
+        let indices = refitted
+            .iter()
+            .filter_map(|&cell| self.cell_indexing.index(cell));
+        let inside = indices.flat_map(|index| self.by_cell.at(index));
         let touched = points.into_iter().flat_map(around).chain(inside);
         ascending(touched, self.elements.len())
     }
@@ -178,18 +180,18 @@ impl<D: Dim> Mesh<D> {
     /// Rebuilds the elements of a cell so that together they fill the children in the mask `filled` [Endo
     /// 2004, §3.2, phase 2 d].
     fn refit(&mut self, cell: Cell, filled: u8, past: &mut Past, removed: &mut Vec<ElementId>) {
-        let Some(place) = self.places.index(cell) else {
+        let Some(index) = self.cell_indexing.index(cell) else {
             return;
         };
         let mut left = filled;
-        let present: Vec<ElementId> = self.by_cell.at(place).collect();
+        let present: Vec<ElementId> = self.by_cell.at(index).collect();
         for id in present {
             let children = self.alive(id).children;
             if parts::<D>(filled).any(|part| part == children) {
                 left &= !children;
                 continue;
             }
-            self.by_cell.remove(place, id);
+            self.by_cell.remove(index, id);
             let element = self.elements[id].take();
             let element = element.expect("a cell lists live elements only");
             for &node in &element.nodes {
@@ -199,7 +201,7 @@ impl<D: Dim> Mesh<D> {
             removed.push(id);
         }
         for part in parts::<D>(left) {
-            self.place(cell, part);
+            self.add_element(cell, part);
         }
     }
 }
@@ -279,7 +281,7 @@ impl Past {
             let mut removed = removed.take_while(|element| element.cell == cell);
             let here = || {
                 mesh.by_cell
-                    .at(mesh.places.index(cell)?)
+                    .at(mesh.cell_indexing.index(cell)?)
                     .find_map(|id| self.was(mesh, id).filter(fills))
             };
             let found = removed.find(fills).or_else(here)?;
@@ -289,9 +291,9 @@ impl Past {
 
     /// Returns an element as it was before the remodelling; `None` if the remodelling created the element.
     fn was<'a, D: Dim>(&'a self, mesh: &'a Mesh<D>, id: ElementId) -> Option<&'a Element> {
-        let place = self.replaced.binary_search_by_key(&id, |&(id, _)| id);
-        let element = match place {
-            Ok(place) => &self.replaced[place].1,
+        let index = self.replaced.binary_search_by_key(&id, |&(id, _)| id);
+        let element = match index {
+            Ok(index) => &self.replaced[index].1,
             Err(_) => mesh.alive(id),
         };
         (!element.nodes.is_empty()).then_some(element)
@@ -315,11 +317,11 @@ fn collect_shares<D: Dim>(
     weight: f64,
     (first, shares): (usize, &mut Vec<(NodeId, f64)>),
 ) {
-    if let Some(place) = element_class.node_at(slot_index(slot)) {
+    if let Some(index) = element_class.node_at(slot_index(slot)) {
         let mut own = shares[first..].iter_mut();
-        match own.find(|share| share.0 == nodes[place]) {
+        match own.find(|share| share.0 == nodes[index]) {
             Some(share) => share.1 += weight,
-            None => shares.push((nodes[place], weight)),
+            None => shares.push((nodes[index], weight)),
         }
         return;
     }

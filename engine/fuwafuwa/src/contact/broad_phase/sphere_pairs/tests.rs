@@ -125,7 +125,7 @@ fn check<D: Dim>(n: usize) {
                 &bodies,
                 &format!("tick {tick}, substep {substep}"),
             );
-            spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
+            spheres.set_close(pairs.list.iter().flat_map(|pair| pair.spheres));
             let mut furthest = 0.0f32;
             let body = bodies.at_mut(BALL);
             for node in body.positions().ids() {
@@ -149,14 +149,14 @@ fn list_contains_all_close_pairs_of_moving_crumbs() {
 }
 
 /// Returns the crack-face pairs, each as the body and element of both spheres, in ascending order.
-fn lips(spheres: &Spheres) -> Vec<[(BodySlot, ElementId); 2]> {
+fn crack_face_pairs(spheres: &Spheres) -> Vec<[(BodySlot, ElementId); 2]> {
     let key = |sphere: SphereId| spheres.list[sphere].key();
     let ascending = |[a, b]: [(BodySlot, ElementId); 2]| [a.min(b), a.max(b)];
-    let mut lips: Vec<_> = { spheres.crack_faces.iter() }
-        .map(|lips| ascending(lips.map(key)))
+    let mut pairs: Vec<_> = { spheres.crack_face_pairs.iter() }
+        .map(|pair| ascending(pair.map(key)))
         .collect();
-    lips.sort_unstable();
-    lips
+    pairs.sort_unstable();
+    pairs
 }
 
 /// Tears a body at random. Compares the updated spheres and crack-face pairs with rebuilt ones, and
@@ -176,7 +176,7 @@ fn check_tears<D: Dim>(n: usize) {
                 &bodies,
                 &format!("tick {tick}, round {round}"),
             );
-            spheres.note_close(pairs.list.iter().flat_map(|pair| pair.spheres));
+            spheres.set_close(pairs.list.iter().flat_map(|pair| pair.spheres));
             let count = 1 + below(12);
             let sides = (0..count).map(|_| {
                 let mut at = [0; 3];
@@ -191,7 +191,7 @@ fn check_tears<D: Dim>(n: usize) {
             let mut anew = Spheres::default();
             anew.start_tick(&bodies, &mut Vec::new());
             assert_eq!(kept, anew.list);
-            assert_eq!(lips(&spheres), lips(&anew));
+            assert_eq!(crack_face_pairs(&spheres), crack_face_pairs(&anew));
             let mut rebuilt = bodies.clone();
             rebuilt.at_mut(BALL).rebuild();
             let mut anew = Spheres::default();
