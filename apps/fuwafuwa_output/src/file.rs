@@ -247,7 +247,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let name = "脳".repeat(85);
         write(&folder.path().join(&name), b"whole").unwrap();
-        assert_eq!(names(folder.path()), [name.clone()]);
+        assert_eq!(names(folder.path()), std::slice::from_ref(&name));
         let error = write(folder.path(), b"").unwrap_err();
         assert_eq!(error.kind(), ErrorKind::IsADirectory);
         let missing = folder.path().join("no/file");

@@ -89,7 +89,7 @@ mod tests {
         for (bytes, found) in [
             (&b"\xff\xd8\xff\xe0 photo"[..], "a JPEG picture"),
             (b"<!doctype html><title>404</title>", "a web page"),
-            (b"d\0i\0m\0 \0=\0 \02\0", "a text in UTF-16, not in UTF-8"),
+            (b"d\0i\0m\0 \0=\0 \x002\0", "a text in UTF-16, not in UTF-8"),
             (
                 b"version https://git-lfs.github.com/spec/v1\n",
                 "a Git LFS pointer, not the file itself (run git lfs pull)",

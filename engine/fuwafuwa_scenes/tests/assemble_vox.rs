@@ -511,7 +511,7 @@ fn scene_names_its_limit_and_the_size_of_the_model() {
 #[test]
 fn damaged_scene_names_the_node() {
     let one = model_chunks([1; 3], &[[0, 0, 0, 1]]);
-    let scene = |nodes: &[Vec<u8>]| file(200, &[&[one.clone()], nodes].concat());
+    let scene = |nodes: &[Vec<u8>]| file(200, &[std::slice::from_ref(&one), nodes].concat());
     let frame =
         |frame: &[(&str, &str)]| scene(&[transform(0, 1, -1, &[], &[frame]), shape(1, &[], &[0])]);
     for (bytes, expected) in [

@@ -180,7 +180,7 @@ fn invalid_level_is_reported_with_its_line() {
         (&b"\xff"[..], "an unknown type of file"),
         (b"", "an empty file"),
         (b"%PDF-1.7", "a PDF document"),
-        (b"d\0i\0m\0 \0=\0 \02\0", "a text in UTF-16, not in UTF-8"),
+        (b"d\0i\0m\0 \0=\0 \x002\0", "a text in UTF-16, not in UTF-8"),
     ] {
         let other = Level::read("mine.toml", bytes, &nothing).unwrap_err();
         let expected = format!("mine.toml: expected a level, a picture or a model, found {found}");
