@@ -473,7 +473,7 @@ mod tests {
         let (mut world, soft) = alone(grid.expect("the grid is valid"));
         let body = world.soft_body_mut(soft).unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
-        let mut stretch = |world: &mut World<Dim2>, share: f32, velocity: Vec2| {
+        let stretch = |world: &mut World<Dim2>, share: f32, velocity: Vec2| {
             let body = world.soft_body_mut(soft).unwrap();
             for &id in &ids {
                 let at = body.node_state(id).0 * Vec2::new(share, 1.0 / share);
