@@ -163,7 +163,7 @@ fn round_pauses_when_focus_is_lost() {
 }
 
 #[test]
-fn buttons_fit_into_small_windows_with_large_text() {
+fn buttons_fit_into_width_of_small_windows_with_large_text() {
     let sizes = [
         [900.0, 640.0],
         [640.0, 400.0],
@@ -179,7 +179,7 @@ fn buttons_fit_into_small_windows_with_large_text() {
         let wishes = round.level().game().wish.len();
         assert!(wishes == 3 && game(&mut window).bout.won.unwrap().1);
         let screens = [Screen::Result, Screen::Paused, Screen::Title];
-        for (screen, count) in screens.into_iter().zip([8, 6, 5]) {
+        for (screen, count) in screens.into_iter().zip([8, 6, 6]) {
             for (language, _) in Language::ALL {
                 game(&mut window).settings.language = language;
                 game(&mut window).go(screen);
@@ -189,7 +189,9 @@ fn buttons_fit_into_small_windows_with_large_text() {
                 assert_eq!(buttons.len(), count, "{screen:?}");
                 for button in buttons {
                     let rect = button.rect();
-                    assert!(room.contains_rect(rect), "{screen:?}: {rect:?} in {room:?}");
+                    // Columns that are higher than the window scroll.
+                    let fits = room.left() <= rect.left() && rect.right() <= room.right();
+                    assert!(fits, "{screen:?}: {rect:?} in {room:?}");
                 }
             }
         }
