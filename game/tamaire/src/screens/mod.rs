@@ -4,6 +4,7 @@ mod attendant;
 mod buttons;
 mod confirmation;
 mod forces;
+mod hopeless;
 mod hud;
 mod icons;
 mod levels;
@@ -19,6 +20,7 @@ mod settings;
 #[cfg(not(target_family = "wasm"))]
 mod stand;
 mod title;
+mod watching;
 mod widgets;
 
 pub use attendant::StandController;
