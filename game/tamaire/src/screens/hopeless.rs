@@ -108,7 +108,9 @@ mod tests {
 
     fn round(id: &str) -> AnyRound {
         let mut round = AnyRound::new(Arc::new(Level::open(id).unwrap()));
-        (0..30).for_each(|_| round.step(InputFrame::default()));
+        for _ in 0..30 {
+            round.step(InputFrame::default());
+        }
         round
     }
 
