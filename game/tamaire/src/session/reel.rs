@@ -109,16 +109,17 @@ mod tests {
     #[test]
     fn wound_world_equals_played_world() {
         let clock = Clock::of(|| 0.0);
-        let mut reel = Reel::new(Playback::new(replay(900)).unwrap());
+        let recorded = replay(420);
+        let mut reel = Reel::new(Playback::new(recorded.clone()).unwrap());
         let length = reel.playback().ticks();
         assert!(length > 2 * FIRST_STEP / 3, "{length}");
-        for tick in [length, 10, length - 5, 150, length / 2, 0] {
+        for tick in [length, 10, length - 5, 0] {
             reel.wind_to(tick);
             assert!(reel.is_winding());
             assert_eq!(reel.tick(), tick);
             reel.wind(&clock).unwrap();
             assert!(!reel.is_winding());
-            let mut played = Playback::new(replay(900)).unwrap();
+            let mut played = Playback::new(recorded.clone()).unwrap();
             (0..tick).for_each(|_| played.step().unwrap());
             let found = reel.playback();
             assert_eq!(
