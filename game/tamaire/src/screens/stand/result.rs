@@ -44,7 +44,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     let area = UiBuilder::new().max_rect(above(ui.max_rect()));
     let show = |ui: &mut Ui| {
         column_beside(ui, WIDE, (0.0, false), |ui| {
-            card(ui, &theme, |ui| {
+            let wish = card(ui, &theme, |ui| {
                 ui.spacing_mut().item_spacing = Vec2::ZERO;
                 headline(ui, &theme, said, outcome.route);
                 ui.add_space(GAP);
@@ -71,16 +71,16 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
                     }
                 }
                 wish
-            })
+            });
+            (wish, ui.min_rect())
         })
     };
-    let shown = ui.scope_builder(area, show);
-    let wish = shown.inner;
+    let (wish, card_rect) = ui.scope_builder(area, show).inner;
     let screen = ui.max_rect();
     let most = most_of_code(screen);
     let place = place_of_code(screen, most);
     let code = stand.coming_code().map(|_| place);
-    play::note_free_part(ui, between(screen, code, shown.response.rect));
+    play::note_free_part(ui, between(screen, code, card_rect));
     if let Some(home) = stand.to_take_home() {
         ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
             code::show(ui, game, home, most)
