@@ -212,6 +212,33 @@ impl View {
         Vec3::new(self.centre[0] + way.x, self.centre[1] - way.y, 0.0)
     }
 
+    /// Returns the view with everything smaller by the factor `share`, 0 to 1, around the centre of its part of the
+    /// screen. In 3D this is exact at the distance of the camera's target.
+    pub fn shrunk(mut self, share: f32) -> Self {
+        self.scale *= share;
+        if let Some(camera) = &mut self.space {
+            camera.distance /= share;
+        }
+        self
+    }
+
+    /// Returns the view moved sideways and up or down, so that all that it shows appears displaced by `by`
+    /// [points]. In 3D this is exact at the distance of the camera's target.
+    pub fn displaced(mut self, by: Vec2) -> Self {
+        let way = vec2(by.x, -by.y) / self.scale;
+        match &mut self.space {
+            None => self.centre = [self.centre[0] - way.x, self.centre[1] - way.y],
+            Some(camera) => {
+                let (sin, cos) = camera.azimuth.sin_cos();
+                let rise = camera.elevation;
+                let right = Vec3::new(cos, 0.0, -sin);
+                let up = Vec3::new(-sin * rise.sin(), rise.cos(), -cos * rise.sin());
+                camera.target -= way.x * right + way.y * up;
+            }
+        }
+        self
+    }
+
     /// Returns the scale at a world point [points/m].
     pub fn scale_at(&self, at: Vec3) -> f32 {
         let Some(camera) = &self.space else {
@@ -252,6 +279,30 @@ mod tests {
         assert!((position.x - 0.7).abs() < 1e-4 && (position.y + 0.3).abs() < 1e-4);
         camera.follow(Vec3::new(1.0, 0.5, 0.0), arena, 0.05, true);
         assert_eq!(camera.view_of_plane(view.rect, arena).centre, [0.0, 0.0]);
+    }
+
+    #[test]
+    fn displaced_view_shows_everything_displaced() {
+        let arena = [Vec3::new(-1.6, 0.0, -1.0), Vec3::new(1.6, 1.6, 1.0)];
+        let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 600.0));
+        let mut camera = CameraRig::default();
+        let by = vec2(-90.0, 40.0);
+        let view = camera.view_of_plane(rect, arena);
+        let at = Vec3::new(0.7, 0.4, 0.0);
+        let way = view.displaced(by).to_screen(at) - view.to_screen(at);
+        assert!((way - by).length() < 1e-2, "{way:?}");
+        for turn in [0.0, 0.8] {
+            camera.orbit(turn, 0.2);
+            let view = camera.view_of_space(rect, arena);
+            let target = view.space.unwrap().target;
+            let way = view.displaced(by).to_screen(target) - view.to_screen(target);
+            let aside = target + Vec3::new(turn.cos(), 0.0, -turn.sin()) * 0.1;
+            let away = |view: View| (view.to_screen(aside) - view.to_screen(target)).length();
+            let share = away(view.shrunk(0.5)) / away(view);
+            assert!((share - 0.5).abs() < 0.02, "{share}");
+            // The displaced target is seen at an angle, but at the same depth.
+            assert!((way - by).length() < 0.01 * by.length(), "{turn}: {way:?}");
+        }
     }
 
     #[test]

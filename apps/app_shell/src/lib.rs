@@ -6,7 +6,7 @@
 //! - [`CameraRig`] and [`View`]: camera, and mapping between world and screen
 //! - [`GpuWatch`]: detection of a lost GPU
 //! - [`pass`] and [`SpaceStage`]: drawing of worlds in egui
-//! - [`Theme`], [`style`] and [`widgets`]: colours, fonts and buttons
+//! - [`Theme`], [`theme`], [`style`] and [`widgets`]: colours, fonts and buttons
 //! - `window`: opening a window on a desktop, and the reason why it ended
 //!
 //! No module opens a file. All modules except `window` also compile for a browser.
@@ -24,7 +24,7 @@ mod pads;
 pub mod pass;
 mod space_stage;
 pub mod style;
-mod theme;
+pub mod theme;
 pub mod widgets;
 #[cfg(not(target_family = "wasm"))]
 pub mod window;

@@ -1,6 +1,34 @@
-//! Colours of the interface and the world.
+//! Colours of the interface and the world. Text has a contrast of at least 4.5 : 1 on each ground that it is
+//! drawn on, in both themes.
 
 use egui::Color32;
+
+/// Background of pages, which are opaque. Over a world, the same colour is translucent; see [`dimmed`].
+pub const PAGE: Color32 = Color32::from_rgb(255, 248, 238);
+
+/// Opacity of [`PAGE`] over a world that text is drawn on without a card, 0 to 255. With less, the world would
+/// be too dark for text in the colour [`Theme::accent`].
+pub const DIMMED: u8 = 80;
+
+/// Returns the colour of `world` behind [`PAGE`] of the opacity `strength`, 0 to 255.
+pub fn dimmed(world: Color32, strength: u8) -> Color32 {
+    world.blend(PAGE.gamma_multiply_u8(strength))
+}
+
+/// Returns the contrast of two opaque colours, 1 (none) to 21 (black on white) [WCAG 2.2, contrast ratio].
+pub fn contrast(one: Color32, other: Color32) -> f32 {
+    let [one, other] = [luminance(one), luminance(other)];
+    (one.max(other) + 0.05) / (one.min(other) + 0.05)
+}
+
+/// Returns the relative luminance of an opaque colour, 0 (black) to 1 (white) [WCAG 2.2, relative luminance].
+fn luminance(of: Color32) -> f32 {
+    let linear = |part: u8| match f32::from(part) / 255.0 {
+        dark if dark <= 0.04045 => dark / 12.92,
+        light => ((light + 0.055) / 1.055).powf(2.4),
+    };
+    0.2126 * linear(of.r()) + 0.7152 * linear(of.g()) + 0.0722 * linear(of.b())
+}
 
 /// Colours of the interface and the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,24 +74,25 @@ impl Theme {
         colour(self.world.strain(strain))
     }
 
-    /// Returns the usual theme, or the theme for colour-blind users [Okabe 2008].
+    /// Returns the usual theme, or the theme for colour-blind users. Its colours are those of [Okabe 2008], the
+    /// vermilion darkened for the contrast of text.
     pub fn of(colour_safe: bool) -> Self {
         let rgb = Color32::from_rgb;
         let usual = Self {
             paper: rgb(255, 250, 240),
             ink: rgb(74, 54, 52),
-            faint: rgb(146, 122, 112),
+            faint: rgb(124, 101, 92),
             card: rgb(255, 255, 255),
             button: rgb(255, 236, 214),
-            accent: rgb(240, 108, 98),
+            accent: rgb(190, 57, 50),
             on_accent: rgb(255, 255, 255),
-            good: rgb(87, 168, 92),
+            good: rgb(44, 122, 56),
             world: fuwafuwa_render::Palette::candy(),
         };
         match colour_safe {
             false => usual,
             true => Self {
-                accent: rgb(213, 94, 0),
+                accent: rgb(172, 73, 0),
                 good: rgb(0, 114, 178),
                 world: fuwafuwa_render::Palette::colour_safe(),
                 ..usual
@@ -75,4 +104,66 @@ impl Theme {
 fn colour(of: fuwafuwa_render::Colour) -> Color32 {
     let [red, green, blue] = of.map(|k| (255.0 * k + 0.5) as u8);
     Color32::from_rgb(red, green, blue)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Least contrast of text [WCAG 2.2, level AA].
+    const LEAST: f32 = 4.5;
+
+    #[test]
+    fn contrast_matches_known_values() {
+        let grey = |level: u8| Color32::from_gray(level);
+        assert_eq!(contrast(Color32::WHITE, Color32::BLACK), 21.0);
+        assert_eq!(contrast(grey(90), grey(90)), 1.0);
+        // #767676 is the lightest grey that WCAG allows for text on white; #777777 is too light.
+        assert!((contrast(grey(0x76), Color32::WHITE) - 4.54).abs() < 0.005);
+        assert!((contrast(Color32::WHITE, grey(0x77)) - 4.48).abs() < 0.005);
+    }
+
+    #[test]
+    fn text_is_readable_on_every_ground() {
+        for colour_safe in [false, true] {
+            let theme = Theme::of(colour_safe);
+            // Floor and walls of a round behind the title, and behind labels on translucent cards.
+            let world = theme.world.floor.map(colour);
+            let [title, labels] = [
+                dimmed(world[1], DIMMED),
+                world[1].blend(theme.card.gamma_multiply(0.72)),
+            ];
+            let pages = [("page", PAGE), ("paper", theme.paper), ("card", theme.card)];
+            let buttons = [
+                ("button", theme.button),
+                ("label", labels),
+                ("title", title),
+            ];
+            let mut pairs = vec![
+                ("on_accent", theme.on_accent, ("accent", theme.accent)),
+                ("card", theme.card, ("ink", theme.ink)),
+            ];
+            for (name, ink) in [
+                ("accent", theme.accent),
+                ("faint", theme.faint),
+                ("good", theme.good),
+            ] {
+                pairs.extend(pages.map(|ground| (name, ink, ground)));
+            }
+            pairs.extend(pages.map(|ground| ("ink", theme.ink, ground)));
+            pairs.extend(buttons.map(|ground| ("ink", theme.ink, ground)));
+            pairs.push(("accent", theme.accent, ("title", title)));
+            // The title over the frame of a room has a pale ground.
+            let frame = dimmed(colour(theme.world.frame), DIMMED);
+            let pale = frame.blend(theme.card.gamma_multiply(0.8));
+            pairs.push(("accent", theme.accent, ("frame", pale)));
+            for (name, ink, (ground, behind)) in pairs {
+                let found = contrast(ink, behind);
+                assert!(
+                    found >= LEAST,
+                    "{name} on {ground}: {found:.2}, colour_safe {colour_safe}"
+                );
+            }
+        }
+    }
 }

@@ -4,6 +4,7 @@ mod bar;
 mod curves;
 pub mod devices;
 pub mod hand;
+mod help;
 mod pictures;
 mod section;
 pub mod session;
@@ -64,6 +65,8 @@ pub struct App {
     colours: Palette,
     clock: Clock,
     before: f64,
+    /// Whether the help with the controls is open.
+    has_help: bool,
     /// Message on the screen, and the time at which the message disappears [s].
     said: Option<(String, f64)>,
     gpu: GpuWatch,
@@ -92,6 +95,7 @@ impl App {
             colours: pictures::palette(),
             clock: Clock::of_machine(),
             before: 0.0,
+            has_help: false,
             said: None,
             gpu: GpuWatch::of(state, "fuwafuwa_surgery"),
             setup,
@@ -228,7 +232,7 @@ impl App {
         let mut wishes = HandInput::default();
         let (presses, look) = self.devices.hear(&mut wishes, room, turn, seconds);
         if let Some(view) = &self.view {
-            hear_mouse(ctx, view, session, &mut wishes);
+            hear_mouse(ctx, view, session, &mut wishes, is_typing);
         }
         let mut keys_look = Vec2::ZERO;
         if !is_typing {
@@ -255,6 +259,12 @@ impl App {
             self.devices.tear(torn);
         }
         self.devices.feel(force, turn, silence);
+        if std::mem::take(&mut session.has_gripped_nothing) {
+            self.say("The forceps hold nothing: touch the organ with their tip, then grip.".into());
+        }
+        let Some(session) = &mut self.session else {
+            return;
+        };
         if let Some(verdict) = session.verdict.take() {
             session.is_paused = true;
             self.say(verdict);
@@ -308,6 +318,9 @@ impl App {
         if pressed(Key::F12) {
             self.cut_forces();
         }
+        if pressed(Key::F1) || pressed(Key::Questionmark) {
+            self.has_help = !self.has_help;
+        }
     }
 
     fn show(&mut self, ui: &mut Ui) {
@@ -355,6 +368,11 @@ impl App {
                 .session
                 .as_ref()
                 .map(|session| pictures::show(ui, rect, &mut self.stage, session, &self.colours));
+            if let (Some(session), Some(slices)) = (&self.session, &self.slices) {
+                let case = session.procedure().case();
+                help::legend(ui, &self.theme, rect, case, slices.shown, &self.colours);
+            }
+            help::show(ui, &self.theme, rect, &mut self.has_help);
             self.show_words(ui, rect);
         });
         if let Some(ask) = ask {
@@ -431,9 +449,18 @@ pub fn wanted(files: Vec<PathBuf>, setup: &Setup) -> LoadRequest {
     }
 }
 
-/// Handles the mouse. Its position moves the hand in the horizontal plane at the current height of the hand,
-/// and the wheel changes the height. The left button grips, and the right button turns the camera.
-fn hear_mouse(ctx: &egui::Context, view: &View, session: &mut Session, wishes: &mut HandInput) {
+/// Handles the mouse. Its position moves the hand in the horizontal plane at the height of the hand, and the wheel
+/// changes the height. The left button grips, and the right button turns the camera.
+///
+/// From a movement of the mouse on, until keys or sticks move the hand or the camera turns, the tip of the tool stays
+/// under the pointer at each height.
+fn hear_mouse(
+    ctx: &egui::Context,
+    view: &View,
+    session: &mut Session,
+    wishes: &mut HandInput,
+    is_typing: bool,
+) {
     let (at, delta, grips, turns, wheel, twice) = ctx.input(|input| {
         let pointer = &input.pointer;
         (
@@ -448,16 +475,30 @@ fn hear_mouse(ctx: &egui::Context, view: &View, session: &mut Session, wishes: &
     let Some(at) = at.filter(|at| view.rect.contains(*at)) else {
         return;
     };
-    if turns {
-        session.camera.orbit(-DRAG * delta.x, DRAG * delta.y);
-    } else if delta != Vec2::ZERO {
-        wishes.place = Some(view.to_world(at, session.hand.goal.y));
-    }
+    wishes.wheel += WHEEL * wheel;
+    wishes.grips |= grips;
     if twice {
         session.camera.return_to_front();
     }
-    wishes.wheel += WHEEL * wheel;
-    wishes.grips |= grips;
+    if turns {
+        session.camera.orbit(-DRAG * delta.x, DRAG * delta.y);
+    }
+    let is_led = wishes.place.is_some() || wishes.lean != Vec2::ZERO;
+    let mut keys = HandInput::default();
+    let looks = match is_typing {
+        true => Vec2::ZERO,
+        false => hear_keys(ctx, &mut keys),
+    };
+    let is_left = is_led || keys.lean != Vec2::ZERO || looks != Vec2::ZERO || turns || twice;
+    session.follows_pointer = match is_left {
+        true => false,
+        false => session.follows_pointer || delta != Vec2::ZERO,
+    };
+    if session.follows_pointer {
+        let [low, high] = session.procedure().table().room;
+        let height = (session.hand.goal.y + wishes.wheel).clamp(low.y, high.y);
+        wishes.place = Some(view.to_world(at, height));
+    }
 }
 
 /// Handles held keys and returns the camera's turning speed as a fraction of [`LOOK`].

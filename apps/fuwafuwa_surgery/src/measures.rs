@@ -30,6 +30,18 @@ pub struct Sample {
     pub grips: bool,
 }
 
+/// Returns the strongest force on the tool that lasted [N]: the greatest median of three successive ticks (50 ms).
+/// A force that acts for a single tick does not count, because such a spike is an artefact of contacts that begin
+/// and end with whole voxels. 0 for fewer than three samples.
+pub fn strongest_force(samples: &[Sample]) -> f32 {
+    let median = |some: &[Sample]| {
+        let mut forces = [0, 1, 2].map(|k: usize| some[k].force.length());
+        forces.sort_by(f32::total_cmp);
+        forces[1]
+    };
+    samples.windows(3).map(median).fold(0.0, f32::max)
+}
+
 /// Volume of a piece of the organ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PieceVolume {
@@ -70,4 +82,31 @@ pub fn parts(body: &SoftBody<Dim3>, voxel: f64) -> Vec<PieceVolume> {
 pub fn pieces(body: &SoftBody<Dim3>) -> u32 {
     let list = &body.pieces().list;
     list.len() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn samples(forces: &[f32]) -> Vec<Sample> {
+        let sample = |&force: &f32| Sample {
+            force: Vec3::new(0.0, force, 0.0),
+            ..Sample::default()
+        };
+        forces.iter().map(sample).collect()
+    }
+
+    #[test]
+    fn strongest_force_ignores_a_spike_of_one_tick() {
+        for (forces, expected) in [
+            (&[1.0, 1.0, 9.0, 1.0, 2.0][..], 2.0),
+            (&[0.0, 5.0, 0.0, 0.0], 0.0),
+            (&[0.0, 5.0, 4.0, 0.0], 4.0),
+            (&[1.0, 3.0, 3.0, 3.0, 2.0], 3.0),
+            (&[7.0, 7.0], 0.0),
+            (&[], 0.0),
+        ] {
+            assert_eq!(strongest_force(&samples(forces)), expected, "{forces:?}");
+        }
+    }
 }

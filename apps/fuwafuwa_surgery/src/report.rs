@@ -1,6 +1,6 @@
 //! Report of a procedure: a table of all ticks (CSV), plots (SVG), and a summary.
 
-use crate::measures::{PieceVolume, Sample};
+use crate::measures::{PieceVolume, Sample, strongest_force};
 use crate::procedure::Procedure;
 use fuwafuwa::DEFAULT_TICK;
 use plotters::prelude::*;
@@ -116,7 +116,9 @@ fn draw(
     let points = || lines.iter().flat_map(|(.., points)| points);
     let long = points().map(|point| point.0).fold(1.0, f64::max);
     let high = points().map(|point| point.1).fold(0.0, f64::max);
-    let high = if high > 0.0 { 1.1 * high } else { 1.0 };
+    // The legend of several lines has room above them.
+    let room = if lines.len() > 1 { 1.5 } else { 1.1 };
+    let high = if high > 0.0 { room * high } else { 1.0 };
     // Limits the labels of a count to whole numbers.
     let labels = match is_count {
         true => (high as usize).min(LABELS - 1) + 1,
@@ -172,10 +174,9 @@ fn seconds(tick: usize) -> f32 {
 /// Returns a summary of the procedure in a few lines.
 pub fn summary(procedure: &Procedure, parts: &[PieceVolume]) -> String {
     let last = procedure.samples().last().copied().unwrap_or_default();
-    let strongest = procedure.samples().iter().map(|sample| sample.peak);
-    let strongest = strongest.fold(0.0, f32::max);
+    let strongest = strongest_force(procedure.samples());
     let mut text = format!(
-        "{}: {:.1} s, peak force {strongest:.2} N, {:.0} mm² cut over {:.0} mm with {:.1} mJ, {} nodes released\n",
+        "{}: {:.1} s, strongest force {strongest:.2} N (for at least two ticks), {:.0} mm² cut over {:.0} mm with {:.1} mJ, {} nodes released\n",
         procedure.case().name,
         procedure.ticks() as f32 * DEFAULT_TICK,
         1e6 * last.area,

@@ -37,6 +37,8 @@ const THINNEST: f32 = 1.5;
 const REACH: f32 = 0.004;
 /// Radius around the gripped point within which nodes are attached to the forceps [m].
 const JAW: f32 = 0.004;
+/// Radius of the drawn jaws [m].
+const JAW_RADIUS: f32 = 0.0013;
 /// Pulling force at which gripped tissue slips out of the forceps [N].
 const SLIPS: f32 = 8.0;
 /// Size of the hook's bar [m]: half length and radius. [`THINNEST`] enlarges the radius for coarse organs.
@@ -78,6 +80,8 @@ pub struct HeldTool {
     /// Handle of the engine's knife, and edge radius [µm]; `None` if the tool is not a knife.
     edge: Option<(KnifeHandle, u16)>,
     grip: Option<JointHandle>,
+    /// Gripped point relative to the working point, in the frame of the tool [m].
+    gripped: Vec3,
     /// Whether the forceps are closed, with or without tissue.
     is_closed: bool,
 }
@@ -108,6 +112,7 @@ impl HeldTool {
             holder,
             edge: None,
             grip: None,
+            gripped: Vec3::ZERO,
             is_closed: false,
         })
     }
@@ -210,6 +215,8 @@ impl HeldTool {
             let soft = JointAnchor::on(organ, at).within(JAW);
             let rigid = JointAnchor::on(self.holder, at);
             let joint = Joint::pin(soft, rigid).with_breaking_force(SLIPS);
+            let held = self.rigid(world);
+            self.gripped = held.rotation().inverse().apply(at - held.position());
             self.grip = Some(world.add_joint(joint)?);
         }
         Ok(())
@@ -232,9 +239,10 @@ impl HeldTool {
     pub fn looks(&self, world: &World<Dim3>) -> Vec<Shape<Dim3>> {
         let rigid = self.rigid(world);
         let (at, rotation) = (rigid.position(), rigid.rotation());
-        let place = |[x, y]: [f32; 2]| at + rotation.apply(Vec3::new(x, y, 0.0));
+        let place = |own: Vec3| at + rotation.apply(own);
         let bar = |from: [f32; 2], to: [f32; 2], radius: f32| {
-            Shape::capsule(place(from), place(to), radius)
+            let [from, to] = [from, to].map(|[x, y]| place(Vec3::new(x, y, 0.0)));
+            Shape::capsule(from, to, radius)
         };
         match self.tool {
             Tool::Knife => {
@@ -244,10 +252,14 @@ impl HeldTool {
             }
             Tool::Forceps => {
                 let apart = if self.is_closed { 0.0005 } else { 0.004 };
+                // The jaws meet at the tissue that they hold.
+                let jaw = self.grip.map_or(Vec3::ZERO, |_| self.gripped);
                 let arm = |side: f32| {
                     let middle = [side * 0.007, 0.5 * HANDLE];
+                    let end = place(jaw + side * apart * Vec3::X);
+                    let elbow = place(Vec3::new(middle[0], middle[1], 0.0));
                     [
-                        bar([side * apart, 0.0], middle, 0.0013),
+                        Shape::capsule(end, elbow, JAW_RADIUS),
                         bar(middle, [0.0, HANDLE], 0.0018),
                     ]
                 };

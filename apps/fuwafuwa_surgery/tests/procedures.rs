@@ -137,13 +137,13 @@ fn dull_knife_cuts_less_and_presses_more() {
         let mut procedure = procedure(28);
         let input = with(Tool::Knife, dull);
         let way = [
-            Vec3::new(-0.02, 0.1, 0.02),
-            Vec3::new(-0.02, 0.04, 0.02),
-            Vec3::new(0.03, 0.04, 0.02),
+            Vec3::new(-0.03, 0.1, -0.01),
+            Vec3::new(-0.03, 0.02, -0.01),
+            Vec3::new(0.04, 0.02, -0.01),
         ];
         felt.push(go(&mut procedure, input, &way, 0.06));
         let last = procedure.samples().last().unwrap();
-        // The edge is 3 cm long and moves about 3 cm down and 5 cm sideways, so the cut has several cm². A
+        // The edge is 3 cm long and moves about 3 cm down and 7 cm sideways, so the cut has several cm². A
         // dull edge presses before it cuts.
         areas.push(1e4 * last.area);
         assert!(last.path > 0.03 && last.work > 0.0, "{last:?}");
@@ -159,7 +159,7 @@ fn forceps_hold_and_release_tissue() {
     let mut procedure = procedure(20);
     let input = with(Tool::Forceps, 0);
     let top = procedure.organ().piece_views()[0].high.y;
-    let at = |y: f32| Vec3::new(0.02, y, 0.0);
+    let at = |y: f32| Vec3::new(0.02, y, -0.012);
     go(
         &mut procedure,
         input,
@@ -202,7 +202,7 @@ fn forceps_hold_and_release_tissue() {
 fn hook_feels_contact_force() {
     let mut procedure = procedure(20);
     let top = procedure.organ().piece_views()[0].high.y;
-    let way = [top + 0.02, top - 0.015].map(|y| Vec3::new(0.0, y, 0.0));
+    let way = [top + 0.02, top - 0.015].map(|y| Vec3::new(0.0, y, -0.0154));
     go(&mut procedure, with(Tool::Hook, 0), &way, 0.05);
     let last = procedure.samples().last().unwrap();
     assert!(last.force.y > 0.1, "{:?}", last.force);
@@ -215,7 +215,7 @@ fn blunt_tools_do_not_slip_between_nodes_of_coarse_organs() {
         for tool in [Tool::Forceps, Tool::Hook] {
             let mut procedure = procedure(resolution);
             let top = procedure.organ().piece_views()[0].high.y;
-            let way = [top + 0.01, top - 0.012].map(|y| Vec3::new(0.021, y, 0.003));
+            let way = [top + 0.01, top - 0.012].map(|y| Vec3::new(0.021, y, -0.012));
             go(&mut procedure, with(tool, 0), &way, 0.03);
             let tip = procedure.tool();
             let organ = procedure.organ();

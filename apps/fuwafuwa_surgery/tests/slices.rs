@@ -61,7 +61,8 @@ fn slice_area_matches_the_deformed_organ() {
     let (case, mut table) = table();
     let at = place(&case, &table, [0.0, 0.0, -8.0]);
     let [right, front, up] = HALF;
-    // Area of the ellipse in which a plane 8 mm below the centre cuts the ellipsoid [m²].
+    // Area of the ellipse in which a plane 8 mm below the centre cuts the ellipsoid [m²]. The bend of the kidney
+    // keeps this area, and the plane passes below the ureter.
     let share = 1.0 - (8.0 / up).powi(2);
     let ellipse = (1e-6 * std::f64::consts::PI * right * front * share) as f32;
     let area = Slice::of(organ(&table), Cut::Axial, at.y).area();

@@ -17,6 +17,7 @@ mod shelf;
 mod teach;
 mod time;
 pub mod trial;
+mod watching;
 
 use crate::attract::attract;
 use crate::input::{Action, InputSource};
@@ -39,6 +40,7 @@ use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{Level, Playback, Replay, ReplayError};
 use tamaire_sound::{Cue, Menu};
 use trial::Trial;
+pub use watching::SPEEDS;
 
 /// State of the game.
 pub struct Game {
@@ -439,6 +441,9 @@ impl Game {
             (Screen::Play | Screen::Title, Action::Elements) => self.bout.show_elements(self.time),
             // While the round advances by single steps, the key for slow motion resumes it.
             (Screen::Play, Action::Slow) if self.bout.stepping => self.bout.stepping = false,
+            (Screen::Play, Action::Left | Action::Right) if !self.bout.session.is_played() => {
+                self.leap(action == Action::Right);
+            }
             (Screen::Play, Action::Slow) => self.bout.slow = !self.bout.slow,
             (Screen::Play, Action::Step) => {
                 self.bout.stepping = true;

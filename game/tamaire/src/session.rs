@@ -1,7 +1,10 @@
 //! Real-time control of a round that is played by people or replayed.
 
+mod reel;
+
 use app_shell::{Clock, Pace};
 use fuwafuwa::DEFAULT_TICK;
+use reel::Reel;
 use std::sync::Arc;
 use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError};
 
@@ -19,7 +22,7 @@ pub struct Session {
 enum Player {
     /// The people at the input devices.
     People(AnyRound),
-    Replay(Playback),
+    Replay(Reel),
 }
 
 impl Session {
@@ -33,7 +36,7 @@ impl Session {
     /// # Errors
     /// [`ReplayError`] if the recorded level is invalid or was changed.
     pub fn of_replay(replay: Arc<Replay>) -> Result<Self, ReplayError> {
-        Ok(Self::of(Player::Replay(Playback::new(replay)?)))
+        Ok(Self::of(Player::Replay(Reel::new(Playback::new(replay)?))))
     }
 
     fn of(player: Player) -> Self {
@@ -55,7 +58,7 @@ impl Session {
     pub fn again(&self) -> Self {
         let again = match &self.player {
             Player::People(round) => Self::of_people(round.level().clone()),
-            Player::Replay(playback) => Self::of(Player::Replay(playback.again())),
+            Player::Replay(reel) => Self::of(Player::Replay(Reel::new(reel.playback().again()))),
         };
         let ghost = self.ghost.as_ref().map(Playback::again);
         Self { ghost, ..again }
@@ -65,7 +68,7 @@ impl Session {
     pub fn round(&self) -> &AnyRound {
         match &self.player {
             Player::People(round) => round,
-            Player::Replay(playback) => playback.round(),
+            Player::Replay(reel) => reel.playback().round(),
         }
     }
 
@@ -82,8 +85,24 @@ impl Session {
     /// Whether the replay or the round has ended.
     pub fn is_over(&self) -> bool {
         match &self.player {
-            Player::Replay(playback) => playback.is_over(),
+            Player::Replay(reel) => !reel.is_winding() && reel.playback().is_over(),
             _ => self.round().progress().outcome.is_some(),
+        }
+    }
+
+    /// Returns the position in a replay and its length [ticks]. `None` if people play the round.
+    pub fn position(&self) -> Option<[usize; 2]> {
+        match &self.player {
+            Player::People(_) => None,
+            Player::Replay(reel) => Some([reel.tick(), reel.playback().ticks()]),
+        }
+    }
+
+    /// Winds a replay to `tick`. The ticks in between are computed in the next frames, without sounds. Does nothing
+    /// if people play the round.
+    pub fn wind_to(&mut self, tick: usize) {
+        if let Player::Replay(reel) = &mut self.player {
+            reel.wind_to(tick);
         }
     }
 
@@ -113,6 +132,13 @@ impl Session {
         mut wish: impl FnMut(&AnyRound) -> InputFrame,
         mut seen: impl FnMut(&AnyRound),
     ) {
+        if let Player::Replay(reel) = &mut self.player
+            && reel.is_winding()
+            && self.complaint.is_none()
+        {
+            self.complaint = reel.wind(clock).err();
+            return self.pace.forget();
+        }
         self.pace.begin(seconds.into());
         while self.pace.is_due() {
             let began = clock.now();
@@ -129,8 +155,8 @@ impl Session {
                 let frame = wish(round);
                 round.step(frame);
             }
-            Player::Replay(playback) if self.complaint.is_none() => {
-                self.complaint = playback.step().err();
+            Player::Replay(reel) if self.complaint.is_none() => {
+                self.complaint = reel.step().err();
             }
             Player::Replay(_) => {}
         }

@@ -311,6 +311,16 @@ impl Playback {
         &self.round
     }
 
+    /// Number of ticks that were played.
+    pub fn tick(&self) -> usize {
+        self.tick
+    }
+
+    /// Number of recorded ticks.
+    pub fn ticks(&self) -> usize {
+        self.replay.ticks()
+    }
+
     /// Returns whether all recorded ticks were played.
     pub fn is_over(&self) -> bool {
         self.tick >= self.replay.ticks()

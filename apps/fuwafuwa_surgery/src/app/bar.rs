@@ -81,7 +81,7 @@ pub fn show(
     });
     if let Some(slices) = slices {
         let place = ui.max_rect();
-        let right = place.with_min_x(place.right() - 250.0);
+        let right = place.with_min_x(place.right() - 300.0);
         let layout = egui::Layout::right_to_left(egui::Align::Center);
         let builder = egui::UiBuilder::new().max_rect(right).layout(layout);
         ui.scope_builder(builder, |ui| {
@@ -99,7 +99,7 @@ pub fn show(
             } else {
                 ButtonStyle::Other
             };
-            if button(ui, theme, "Slices follow tool", vec2(104.0, HIGH), weight).clicked() {
+            if button(ui, theme, "Slices follow tool", vec2(164.0, HIGH), weight).clicked() {
                 slices.follows = !slices.follows;
             }
         });

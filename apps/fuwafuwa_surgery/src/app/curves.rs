@@ -10,6 +10,8 @@ use fuwafuwa::DEFAULT_TICK;
 
 /// Time span of the plots [s].
 const SPAN: f32 = 20.0;
+/// Height of the line of text above a curve [points].
+const HEAD: f32 = 28.0;
 const BLUE: Color32 = Color32::from_rgb(47, 111, 159);
 
 /// Plot of a measured quantity over time.
@@ -59,7 +61,9 @@ fn draw(ui: &Ui, rect: Rect, curve: &Curve, samples: &[Sample], theme: &Theme) {
     let seen = &samples[samples.len().saturating_sub((SPAN / DEFAULT_TICK) as usize)..];
     let most = seen.iter().map(curve.value).fold(0.0, f32::max);
     let top = (1.15 * most).max(curve.least);
-    let room = rect.shrink2(vec2(10.0, 8.0));
+    // The curve stays below the line of text.
+    let text_at = rect.shrink2(vec2(10.0, 6.0));
+    let room = text_at.with_min_y(text_at.top() + HEAD);
     let floor = Stroke::new(1.0, theme.faint.gamma_multiply(0.5));
     painter.hline(room.x_range(), room.bottom(), floor);
     let newest = samples.len();
@@ -80,10 +84,22 @@ fn draw(ui: &Ui, rect: Rect, curve: &Curve, samples: &[Sample], theme: &Theme) {
     let digits = if curve.least < 10.0 { 2 } else { 0 };
     let text = format!("{}  {now:.digits$} {}", curve.name, curve.unit);
     let font = FontId::proportional(20.0);
-    painter.text(room.left_top(), Align2::LEFT_TOP, text, font, curve.colour);
+    painter.text(
+        text_at.left_top(),
+        Align2::LEFT_TOP,
+        text,
+        font,
+        curve.colour,
+    );
     let font = FontId::proportional(14.0);
     let text = format!("scale {top:.digits$} {}, {SPAN:.0} s", curve.unit);
-    painter.text(room.right_top(), Align2::RIGHT_TOP, text, font, theme.faint);
+    painter.text(
+        text_at.right_top(),
+        Align2::RIGHT_TOP,
+        text,
+        font,
+        theme.faint,
+    );
 }
 
 fn numbers(ui: &Ui, rect: Rect, session: &Session, theme: &Theme) {

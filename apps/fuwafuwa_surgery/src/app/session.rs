@@ -4,6 +4,7 @@ use super::hand::Hand;
 use crate::measures::{PieceVolume, Sample, parts};
 use crate::procedure::Procedure;
 use crate::record::{Playback, Recording};
+use crate::tools::Tool;
 use app_shell::{CameraRig, Clock, Pace};
 use fuwafuwa::Vec3;
 use std::sync::Arc;
@@ -34,6 +35,10 @@ pub struct Session {
     pub seen: [Vec3; 2],
     /// Region of the slices: low and high corner [m].
     pub sliced: [Vec3; 2],
+    /// Whether the tip of the tool stays under the pointer, because the mouse moved it last.
+    pub follows_pointer: bool,
+    /// Whether the forceps have closed without tissue, until the user was told.
+    pub has_gripped_nothing: bool,
     /// Whether the procedure is paused.
     pub is_paused: bool,
     /// Volumes of the pieces as of the last measurement.
@@ -76,6 +81,8 @@ impl Session {
             camera: CameraRig::default(),
             seen: around(organ, SEEN),
             sliced: around(organ, SLICED),
+            follows_pointer: false,
+            has_gripped_nothing: false,
             is_paused: false,
             looked: 0,
             verdict: None,
@@ -176,9 +183,13 @@ impl Session {
         let before = self.last().released;
         match &mut self.course {
             MotionSource::Hand(procedure) => {
-                if let Err(refused) = procedure.step(self.hand.input()) {
+                let input = self.hand.input();
+                let was_open = procedure.inputs().last().is_none_or(|last| !last.grips);
+                if let Err(refused) = procedure.step(input) {
                     self.verdict = Some(refused.to_string());
                 }
+                let closes = input.tool == Tool::Forceps && input.grips && was_open;
+                self.has_gripped_nothing |= closes && !procedure.held().grips();
             }
             MotionSource::Again(playback) => match playback.step() {
                 Ok(()) if playback.is_over() => {

@@ -22,7 +22,7 @@ use crate::game::{Game, Screen};
 use crate::platform::TextFile;
 use crate::records::Records;
 use app_shell::Clock;
-use config::{Config, ConfigChange, Seconds};
+use config::{Config, ConfigChange, Seconds, Times};
 use egui::Context;
 use health::FrameTimes;
 use jiff::Zoned;
@@ -40,8 +40,12 @@ use visit::Visit;
 /// Side of the hidden square in the upper right corner of the window [points]. Holding it opens the staff
 /// entrance.
 pub const CORNER: f32 = 90.0;
-/// Time in which presses are ignored after the screen has changed or the result has appeared [s].
-const SETTLED: f32 = 0.4;
+/// Time in which presses are ignored after the screen has changed or the result has appeared [s]. A visitor
+/// needs about this time to see a new screen.
+const SETTLED: f32 = 0.7;
+/// Factor by which the times without input are longer while a QR code is shown, because a visitor first has to
+/// take out a phone.
+const UNHURRIED: f32 = 2.0;
 /// Delay between the appearance of the result of a round and of its QR code [s]. The code may cover the
 /// basket, so visitors first see the body in the basket.
 const BEAMING: f32 = 2.0;
@@ -85,10 +89,17 @@ pub struct Stand {
     pub is_ended: bool,
     /// All built-in levels.
     pub known: Vec<Arc<Level>>,
+    /// Length of the countdown that applies now [s].
+    countdown: f32,
+    /// State of the stand after the last frame.
+    before: Phase,
     /// Time since the stand changed its state [s].
     since: f32,
     /// Time for which the result has been shown [s].
     result_since: f32,
+    /// Whether nothing has been held since the current screen settled. A press that began before then chooses
+    /// nothing.
+    is_released: bool,
     file: TextFile,
     /// Logbook and other storage.
     pub memory: Memory,
@@ -115,6 +126,7 @@ impl Stand {
         let config = config.map_err(|error| format!("{}: {error}", file.0.display()))?;
         Ok(Self {
             memory: Memory::begin(&config),
+            countdown: config.times.countdown.0,
             config,
             phase: Phase::Attract,
             attention: Attention::Gone,
@@ -124,8 +136,10 @@ impl Stand {
             answer: None,
             is_ended: false,
             known: Vec::new(),
+            before: Phase::Attract,
             since: 0.0,
             result_since: 0.0,
+            is_released: false,
             file,
             presence: Presence::default(),
             visit: None,
@@ -152,7 +166,6 @@ impl Stand {
 
     /// Advances the stand by a frame of `seconds` [s]: detects visitors and changes the state of the stand.
     pub fn pass(&mut self, game: &mut Game, ctx: &Context, seconds: f32) {
-        let phase = self.phase;
         let now = Instant::now();
         let last = self.last.replace(now);
         self.frames
@@ -168,12 +181,8 @@ impl Stand {
             public.attractions = best;
         }
         self.knock(game, ctx, seconds);
-        let mut times = self.config.times;
-        if matches!(self.phase, Phase::Staff(_)) {
-            // The countdown begins later on staff pages, because staff may read the figures for a long time
-            // without any input.
-            times.rest = times.rest.max(STAFF);
-        }
+        let times = self.times(game);
+        self.countdown = times.countdown.0;
         let attention = self.presence.pass(seconds, is_touched, &times);
         self.attention = match self.phase {
             Phase::Choice | Phase::Visit | Phase::PinEntry | Phase::Staff(_) => attention,
@@ -197,11 +206,13 @@ impl Stand {
             (Phase::Visit, _) => self.lead_back(game, seconds),
             _ => {}
         }
-        self.since = if phase == self.phase {
-            self.since + seconds
-        } else {
-            0.0
+        // The screens change the phase, too, between two calls of this function.
+        self.since = match self.before == self.phase {
+            true => self.since + seconds,
+            false => 0.0,
         };
+        self.before = self.phase;
+        self.note_release(game, ctx);
         game.calls = self.config.force.calls && self.phase == Phase::Attract;
         let public = game.public.get_or_insert_default();
         public.is_left = matches!(self.attention, Attention::Leaving(_));
@@ -211,9 +222,46 @@ impl Stand {
         }
     }
 
-    /// Whether the result has been shown for long enough to accept presses.
-    pub fn is_result_settled(&self) -> bool {
-        self.result_since > SETTLED
+    /// Returns the times without input that apply now.
+    fn times(&self, game: &Game) -> Times {
+        let mut times = self.config.times;
+        if matches!(self.phase, Phase::Staff(_)) {
+            // The countdown begins later on staff pages, because staff may read the figures for a long time
+            // without any input.
+            times.rest = times.rest.max(STAFF);
+        }
+        if self.is_code_due(game) {
+            times.rest.0 *= UNHURRIED;
+            times.countdown.0 *= UNHURRIED;
+        }
+        times
+    }
+
+    /// Whether the result with a QR code is on the screen, or its code is about to appear.
+    fn is_code_due(&self, game: &Game) -> bool {
+        self.phase == Phase::Visit && game.screen() == Screen::Result && self.home.is_some()
+    }
+
+    /// Notes whether nothing has been held since the current screen settled.
+    fn note_release(&mut self, game: &Game, ctx: &Context) {
+        let is_result = self.phase == Phase::Visit && game.screen() == Screen::Result;
+        let since = if is_result {
+            self.result_since
+        } else {
+            self.since
+        };
+        let is_held = ctx.input(|input| {
+            let keys = [egui::Key::Enter, egui::Key::Space];
+            let is_key = keys.into_iter().any(|key| input.key_down(key));
+            // A release in this frame may be the end of an earlier press.
+            is_key || input.pointer.any_down() || input.pointer.any_released()
+        });
+        self.is_released = since > SETTLED && (self.is_released || !is_held);
+    }
+
+    /// Length of the countdown that applies now [s].
+    pub fn countdown(&self) -> f32 {
+        self.countdown
     }
 
     /// QR code of the won round. `None` for the first seconds of the result, so that the code does not cover
@@ -222,10 +270,15 @@ impl Stand {
         self.home.as_ref().filter(|_| self.result_since > BEAMING)
     }
 
-    /// Whether the screen accepts presses. Presses are ignored just after a change of phase, so that the
-    /// press that caused the change has no further effect.
+    /// QR code of the won round, also before it appears.
+    pub fn coming_code(&self) -> Option<&home::Code> {
+        self.home.as_ref()
+    }
+
+    /// Whether the screen accepts presses: the choices have been visible for a moment, and nothing has been held
+    /// since before then. A visitor therefore takes no choice unseen that appeared under the pointer.
     pub fn is_settled(&self) -> bool {
-        self.since > SETTLED
+        self.is_released
     }
 
     /// Whether the pointer is hidden because the mouse has not moved for long.

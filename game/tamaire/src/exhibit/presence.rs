@@ -44,7 +44,8 @@ impl Presence {
     /// Whether there was input since the last call. With `they_stir`, the game itself moves the sticks, so
     /// stick positions are ignored.
     pub fn is_touched(&mut self, ctx: &Context, sticks: &Snapshot, they_stir: bool) -> bool {
-        let by_hand = ctx.input(|input| input.events.iter().any(is_deed));
+        // The game removes the keys that it handles from `events`, but not from the raw input.
+        let by_hand = ctx.input(|input| input.raw.events.iter().any(is_deed));
         let way = ctx.input(|input| input.pointer.delta().length());
         let by_stick = self.is_moved(sticks, they_stir);
         by_hand || self.is_pushed(way) || by_stick

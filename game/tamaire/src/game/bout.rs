@@ -26,6 +26,8 @@ pub struct CurrentRound {
     pub elements: Option<ElementColour>,
     /// Depth to which 3D bodies are cut open in the element view.
     pub opening: Cutaway,
+    /// Speed at which a replay is watched, relative to real time; 1 at its start.
+    pub watch_speed: f32,
     /// Whether slow motion is on.
     pub slow: bool,
     /// Whether the round advances by single steps only.
@@ -52,6 +54,7 @@ impl CurrentRound {
             view: None,
             elements: None,
             opening: Cutaway::default(),
+            watch_speed: 1.0,
             slow: false,
             stepping: false,
             won: None,
@@ -67,6 +70,7 @@ impl CurrentRound {
         let has_failed = self.is_given_up_for(&session);
         self.session = session;
         self.is_ghost_chosen = false;
+        self.watch_speed = 1.0;
         self.opening = Cutaway::begin(time);
         self.effects = Effects::default();
         if self.lesson.begin(has_failed) {

@@ -69,6 +69,13 @@ impl Game {
         self.shelf.refresh(&self.files);
     }
 
+    /// Opens the folder of the file saved at `location` in the system's file manager.
+    pub fn open_folder_of(&mut self, location: &str) {
+        if let Err(error) = self.files.open_folder_of(location) {
+            self.notify(format!("{} {error}", self.words().folder_not_opened));
+        }
+    }
+
     /// Writes all pending data and waits until it is written.
     pub fn finish_writing(&mut self) {
         for news in self.files.finish() {
@@ -85,7 +92,12 @@ impl Game {
             StorageEvent::Damaged(damage) => self.tell_of(damage),
             StorageEvent::Saved(location) => {
                 self.shelf.refresh(&self.files);
-                self.notify(format!("{} {location}", self.words().saved));
+                let text = format!("{} {location}", self.words().saved);
+                // The system's file manager cannot be operated with a single switch.
+                match self.files.has_folders() && !self.settings.scanning.is_on() {
+                    true => self.notices.tell_of_saved(&text, location),
+                    false => self.notify(text),
+                }
             }
             StorageEvent::Failed(reason) => {
                 self.notify(format!("{} {reason}", self.words().not_written));

@@ -4,6 +4,8 @@ use tamaire_play::shortened;
 
 /// Minimum display time of a message [s].
 const LEAST: f32 = 6.0;
+/// Minimum display time of a message with a button [s].
+const LEAST_WITH_BUTTON: f32 = 12.0;
 /// Reading speed that determines longer display times [characters/s].
 const READING: f32 = 15.0;
 /// Maximum length of a message [characters]. Messages may quote files of any length.
@@ -14,6 +16,8 @@ const LETTERS: usize = 600;
 pub struct Notice {
     /// Text of the message.
     pub text: String,
+    /// Location of a saved file, whose folder a button opens.
+    pub saved: Option<String>,
     /// Remaining display time [s].
     pub seconds: f32,
 }
@@ -29,7 +33,21 @@ impl Notices {
         self.take_back(&text);
         let reading = text.chars().count() as f32 / READING;
         let seconds = reading.max(LEAST);
-        self.0.push(Notice { text, seconds });
+        let saved = None;
+        self.0.push(Notice {
+            text,
+            saved,
+            seconds,
+        });
+    }
+
+    /// Adds a message with a button that opens the folder of the file saved at `location`.
+    pub(super) fn tell_of_saved(&mut self, text: &str, location: String) {
+        self.tell(text);
+        if let Some(notice) = self.0.last_mut() {
+            notice.saved = Some(location);
+            notice.seconds = notice.seconds.max(LEAST_WITH_BUTTON);
+        }
     }
 
     /// Removes the message with this text.

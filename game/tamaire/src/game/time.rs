@@ -17,7 +17,14 @@ impl Game {
         self.time += f64::from(seconds);
         self.notices.pass(seconds);
         let runs = self.is_seen() && self.screen() != Screen::Paused && !self.bout.stepping;
-        let pace = if self.bout.slow { SLOW } else { 1.0 } * self.settings.speed;
+        let is_watched = self.screen() == Screen::Play && !self.bout.session.is_played();
+        let watch_speed = if is_watched {
+            self.bout.watch_speed
+        } else {
+            1.0
+        };
+        let slowed = if self.bout.slow { SLOW } else { 1.0 };
+        let pace = slowed * watch_speed * self.settings.speed;
         if runs {
             self.pass_ticks(seconds * pace);
             self.bout.effects.advance(seconds * pace);

@@ -72,11 +72,15 @@ pub enum StorageEvent {
 }
 
 impl Files {
-    /// Opens the storage in the system's data folder for the game.
+    /// Opens the storage in the system's data folder for the game, with photos, clips and replays in the system's
+    /// folders for pictures, videos and documents.
     #[cfg(not(target_family = "wasm"))]
     pub fn usual() -> Self {
         let files = match data_folder() {
-            Some(folder) => Self::in_folder(folder),
+            Some(folder) => {
+                let user = super::folder::UserFolders::of_system();
+                Self::on(super::folder::Folder::new(folder, user))
+            }
             None => Self::on(Nowhere {
                 reason: Some("the system has no data folder for the game"),
             }),
@@ -97,10 +101,11 @@ impl Files {
         files.speaking(&host.language())
     }
 
-    /// Stores data in the given folder.
+    /// Stores all data in the given folder.
     #[cfg(not(target_family = "wasm"))]
     pub fn in_folder(folder: impl Into<std::path::PathBuf>) -> Self {
-        Self::on(super::folder::Folder(folder.into()))
+        let user = super::folder::UserFolders::default();
+        Self::on(super::folder::Folder::new(folder.into(), user))
     }
 
     /// Stores nothing, by choice.
@@ -374,6 +379,20 @@ impl Files {
     /// The error of the system.
     pub fn hand_out(&self, name: &str) -> io::Result<()> {
         self.storage.export(Kind::Replay, name)
+    }
+
+    /// Whether saved files are in folders that [`Files::open_folder_of`] can open.
+    pub fn has_folders(&self) -> bool {
+        self.storage.has_folders()
+    }
+
+    /// Opens the folder of a saved file in the system's file manager. `location` comes from
+    /// [`StorageEvent::Saved`].
+    ///
+    /// # Errors
+    /// The error of the system.
+    pub fn open_folder_of(&self, location: &str) -> io::Result<()> {
+        self.storage.open_folder_of(location)
     }
 
     /// Returns the saved replays, the newest first.

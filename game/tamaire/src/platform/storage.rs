@@ -87,6 +87,20 @@ pub trait Storage: Send + Sync {
         Err(io::ErrorKind::Unsupported.into())
     }
 
+    /// Whether entries are files in folders, which [`Storage::open_folder_of`] can open.
+    fn has_folders(&self) -> bool {
+        false
+    }
+
+    /// Opens the folder of a saved entry in the system's file manager. `location` is the value of
+    /// [`Storage::location`].
+    ///
+    /// # Errors
+    /// The error of the system, or `Unsupported` without folders.
+    fn open_folder_of(&self, _: &str) -> io::Result<()> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
     /// Returns the error of an earlier change that failed after [`Storage::change`] had returned. Returns
     /// each error once.
     fn take_failure(&self) -> Option<io::Error> {

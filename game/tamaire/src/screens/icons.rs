@@ -49,7 +49,7 @@ pub(super) fn route(
 ) {
     let (fill, line) = match is_done {
         true => (theme.material(1), theme.ink),
-        false => (Color32::TRANSPARENT, theme.faint.gamma_multiply(0.6)),
+        false => (Color32::TRANSPARENT, theme.faint),
     };
     let stroke = Stroke::new((0.16 * size).max(1.5), line);
     let square = Rect::from_center_size(middle, vec2(1.7, 1.7) * size);

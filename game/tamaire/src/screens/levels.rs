@@ -6,6 +6,7 @@ use super::widgets::{dim_background, header_to_open, page, page_rect, words};
 use crate::game::Game;
 use crate::look::{Maps, Stage};
 use crate::records::{Record, WishName};
+use app_shell::Theme;
 use app_shell::widgets::{ButtonStyle, fitted, focus_ring, highlight, is_on, plain_button};
 use egui::{
     Color32, Rect, Response, RichText, Role, Sense, Stroke, Tooltip, Ui, Vec2, WidgetInfo, pos2,
@@ -62,6 +63,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                     }
                 });
             }
+            ui.add_space(10.0);
             legend(ui, game);
         });
     });
@@ -201,31 +203,61 @@ fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<
     });
 }
 
-/// Shows the legend of the symbols on the tiles.
-fn legend(ui: &mut Ui, game: &Game) {
+/// Height of a row of the legend [points].
+pub(super) const LEGEND: f32 = 30.0;
+
+/// Shows the legend of the symbols on the tiles, in centred rows.
+pub(super) fn legend(ui: &mut Ui, game: &Game) {
+    const SIGN: f32 = 46.0;
+    const BETWEEN: f32 = 20.0;
     let (theme, said) = (game.theme(), game.words());
     let [won, wish, squeezed, shaved, space] = said.legend;
-    ui.add_space(10.0);
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        let sign = |ui: &mut Ui, name: &str, draw: &dyn Fn(&Ui, egui::Pos2)| {
-            let (rect, _) = ui.allocate_exact_size(vec2(40.0, 30.0), Sense::hover());
-            draw(ui, rect.center());
-            ui.label(RichText::new(name).size(17.0).color(theme.faint));
-            ui.add_space(16.0);
-        };
-        sign(ui, won, &|ui, at| {
+    let route = |route| {
+        move |ui: &Ui, theme: &Theme, at| icons::route(ui.painter(), theme, at, 10.0, route, true)
+    };
+    let [squeeze, shave] = [Route::Squeeze, Route::Shave].map(route);
+    let signs: [(&str, &Sign); 5] = [
+        (won, &|ui, theme, at| {
             ui.painter().circle_filled(at, 12.0, theme.good);
             icons::tick(ui.painter(), at, 6.0, Stroke::new(3.0, theme.card));
+        }),
+        (wish, &|ui, theme, at| {
+            words(ui, at, "★", 20.0, theme.accent)
+        }),
+        (squeezed, &squeeze),
+        (shaved, &shave),
+        (space, &|ui, theme, at| {
+            icons::space(ui, at - vec2(19.0, 12.0), theme)
+        }),
+    ];
+    let texts = signs.map(|(name, _)| fitted(ui.painter(), name, 17.0, 300.0, theme.faint));
+    let widths = texts.each_ref().map(|text| SIGN + text.size().x + BETWEEN);
+    let (mut first, all) = (0, ui.available_width());
+    while first < signs.len() {
+        // As many signs as fit into the row, at least one.
+        let mut width = 0.0;
+        let fits = widths[first..].iter().take_while(|wide| {
+            width += **wide;
+            width - BETWEEN <= all
         });
-        sign(ui, wish, &|ui, at| words(ui, at, "★", 20.0, theme.accent));
-        for (name, route) in [(squeezed, Route::Squeeze), (shaved, Route::Shave)] {
-            sign(ui, name, &|ui, at| {
-                icons::route(ui.painter(), &theme, at, 10.0, route, true)
-            });
+        let count = fits.count().max(1);
+        let width: f32 = widths[first..first + count].iter().sum::<f32>() - BETWEEN;
+        let (row, _) = ui.allocate_exact_size(vec2(all, LEGEND), Sense::hover());
+        let mut left = row.center().x - 0.5 * width;
+        for index in first..first + count {
+            let (name, sign) = signs[index];
+            sign(ui, &theme, pos2(left + 0.5 * 40.0, row.center().y));
+            let text = &texts[index];
+            let at = pos2(left + SIGN, row.center().y - 0.5 * text.size().y);
+            let place = Rect::from_min_size(at, text.size());
+            let response = ui.interact(place, ui.scope_id().with(name), Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
+            ui.painter().galley(at, text.clone(), theme.faint);
+            left += widths[index];
         }
-        sign(ui, space, &|ui, at| {
-            icons::space(ui, at - vec2(19.0, 12.0), &theme)
-        });
-    });
+        first += count;
+    }
 }
+
+/// Function that draws a sign of the legend at its centre.
+type Sign<'a> = dyn Fn(&Ui, &Theme, egui::Pos2) + 'a;

@@ -5,6 +5,7 @@ mod buttons;
 mod confirmation;
 mod forces;
 mod goals;
+mod hopeless;
 mod hud;
 mod icons;
 mod levels;
@@ -21,6 +22,7 @@ mod settings;
 mod stand;
 mod title;
 mod together;
+mod watching;
 mod widgets;
 
 pub use attendant::StandController;

@@ -1,9 +1,11 @@
 //! Screen of a running round.
 
-use super::{hud, offers};
+use super::{hopeless, hud, offers, watching};
 use crate::game::{Game, Screen};
 use crate::look::{DrawOptions, Hint, Stage, view_of_level};
-use egui::Ui;
+use app_shell::View;
+use egui::{Id, Rect, Ui, Vec2, vec2};
+use fuwafuwa::Vec3;
 
 /// Draws the world of the round as the background of the current screen.
 pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
@@ -21,6 +23,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         ui.ctx()
             .animate_bool_with_time(ui.scope_id().with("room below"), is_below, duration);
     view.centre[1] -= 0.1 * share * view.height();
+    let view = beside_cards(game, ui, view, duration);
     game.bout.view = Some(view);
     let theme = game.theme();
     // Until the first level has been won, the hint shows how to push the body into the basket, and again if
@@ -57,10 +60,53 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     stage.draw(ui, game.bout.round(), &look);
 }
 
+/// Width of the room that the winner needs beside the basket, on both sides together [m].
+const AROUND_BASKET: f32 = 0.2;
+/// Least scale of the view beside the cards of a result, relative to the usual one.
+const LEAST_SCALE: f32 = 0.6;
+
+/// Notes the part of the screen that the cards of a result leave free at a stand. From the next frame on, the
+/// basket is shown in its middle, so that no card covers the winner.
+pub(super) fn note_free_part(ui: &Ui, free: Rect) {
+    ui.data_mut(|data| data.insert_temp(free_part(), free));
+}
+
+fn free_part() -> Id {
+    Id::unique("free part of the screen")
+}
+
+/// Returns the view with the basket in the middle of the part of the screen that a result leaves free, if that
+/// part is known. The view moves there within `duration` [s].
+fn beside_cards(game: &Game, ui: &Ui, view: View, duration: f32) -> View {
+    let free: Option<Rect> = ui.data(|data| data.get_temp(free_part()));
+    let is_result = game.screen() == Screen::Result;
+    let basket = game.bout.round().level().game().basket.as_ref();
+    let shown = free.zip(basket).filter(|_| is_result);
+    // The basket with the parts of the winner that stick out of it.
+    let share = shown.map_or(1.0, |(free, basket)| {
+        let wide = 2.0 * basket.half[0] + AROUND_BASKET;
+        (free.width() / (wide * view.scale)).clamp(LEAST_SCALE, 1.0)
+    });
+    let id = |axis: &str| ui.scope_id().with(("beside cards", axis));
+    let ctx = ui.ctx();
+    let duration = if is_result { duration } else { 0.0 };
+    let share = ctx.animate_value_with_time(id("share"), share, duration);
+    let view = view.shrunk(share);
+    let way = shown.map_or(Vec2::ZERO, |(free, basket)| {
+        free.center() - view.to_screen(Vec3::from(basket.centre))
+    });
+    view.displaced(vec2(
+        ctx.animate_value_with_time(id("x"), way.x, duration),
+        ctx.animate_value_with_time(id("y"), way.y, duration),
+    ))
+}
+
 /// Shows the overlay of a round.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
-    let is_on_button = hud::show(game, ui);
+    let mut is_on_button = hud::show(game, ui);
+    is_on_button |= hopeless::show(game, ui);
     offers::show(game, ui);
+    watching::show(game, ui);
     if game.bout.session.is_played() && !is_on_button {
         // The pointer stays visible until it has picked up the hand.
         ui.ctx()

@@ -1,12 +1,12 @@
 //! Result of a round, with a challenge to try the other route.
 
 use super::icons;
-use super::widgets::{Act, card, column_beside, dim_background, perform};
+use super::widgets::{Act, card, column_beside, column_part, dim_background, perform};
 use crate::game::{Game, Screen};
 use crate::words::Words;
 use app_shell::Theme;
 use app_shell::widgets::{ButtonStyle, button, fitted};
-use egui::{Align, Layout, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
+use egui::{Align, FontId, Layout, Rect, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
 use tamaire_play::{Level, Outcome, Route, Wish};
 
@@ -14,6 +14,8 @@ use tamaire_play::{Level, Outcome, Route, Wish};
 const WIDE: f32 = 490.0;
 /// Height of the smaller buttons [points].
 const SMALL: f32 = 46.0;
+/// Font size of the labels of the figures [points]; smaller where a label would not fit.
+const LABEL: f32 = 18.0;
 /// Gap between buttons [points].
 const GAP: f32 = 10.0;
 
@@ -25,10 +27,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     };
     let (theme, said) = (game.theme(), game.words());
     let level = game.bout.round().level().clone();
-    // The card is on the side away from the basket, so that the happy body stays visible.
-    let basket = level.game().basket.as_ref();
-    let is_right = basket.is_some_and(|basket| basket.centre[0] > 0.0);
-    let across = if is_right { 0.05 } else { 0.95 };
+    let across = across(&level);
     let wanted = column_beside(ui, WIDE, (across, false), |ui| {
         card(ui, &theme, |ui| {
             ui.spacing_mut().item_spacing = Vec2::ZERO;
@@ -58,6 +57,26 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         })
     });
     perform(game, ui, wanted, to_levels);
+}
+
+/// Returns the horizontal position of the card, which is on the side away from the basket, so that the happy
+/// body stays visible.
+fn across(level: &Level) -> f32 {
+    let basket = level.game().basket.as_ref();
+    let is_right = basket.is_some_and(|basket| basket.centre[0] > 0.0);
+    if is_right { 0.05 } else { 0.95 }
+}
+
+/// Returns the part of the screen beside the card. In a portrait window, the whole screen: its upper part is free.
+pub(super) fn free_part(game: &Game, screen: Rect) -> Rect {
+    if screen.width() < screen.height() {
+        return screen;
+    }
+    let card = column_part(screen, WIDE, across(game.bout.round().level()));
+    match card.center().x < screen.center().x {
+        true => screen.with_min_x(card.right()),
+        false => screen.with_max_x(card.left()),
+    }
 }
 
 /// Returns the assists of the level as text, if there are any.
@@ -101,11 +120,18 @@ pub(super) fn numbers(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcom
     let summary = (said.summary)(outcome);
     ui.spacing_mut().item_spacing.x = GAP;
     ui.columns(summary.len(), |columns| {
+        // All labels have the size at which the longest one fits.
+        let labels = { columns.iter().zip(&summary) }.map(|(column, (name, _))| {
+            let font = FontId::proportional(LABEL);
+            let galley = { column.painter() }.layout_no_wrap(name.to_string(), font, theme.faint);
+            LABEL * (column.available_width() / galley.size().x).min(1.0)
+        });
+        let size = labels.fold(LABEL, f32::min);
         for (column, (name, value)) in columns.iter_mut().zip(summary) {
             column.spacing_mut().item_spacing = Vec2::ZERO;
             column.vertical_centered(|ui| {
                 line(ui, &value, 29.0, theme.ink);
-                line(ui, name, 18.0, theme.faint);
+                line(ui, name, size, theme.faint);
             });
         }
     });

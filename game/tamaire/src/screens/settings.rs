@@ -79,8 +79,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 slider(ui, &theme, said.text_size, text_size, 0.8, 1.6, 0.1);
             });
             controls(ui, game, &mut chosen);
-            let size = vec2(240.0, 48.0);
-            if button(ui, &theme, said.reset, size, ButtonStyle::Other).clicked() {
+            let size = vec2(300.0, 48.0);
+            ui.add_space(10.0);
+            if is_reset_confirmed(ui, &theme, said) {
                 let usual = Settings::default();
                 chosen = Settings {
                     language: chosen.language,
@@ -136,6 +137,32 @@ fn scanning(ui: &mut Ui, theme: &Theme, said: &Words, chosen: &mut Scanning) {
         }
         set_pending(ui, (!is_asked_twice).then_some(OFF));
     }
+}
+
+/// Shows the button that restores the default settings. A press asks, with the answer "no" in the place of the
+/// button. Returns whether the player has confirmed.
+fn is_reset_confirmed(ui: &mut Ui, theme: &Theme, said: &Words) -> bool {
+    const RESET: &str = "reset";
+    let size = vec2(300.0, 48.0);
+    if !is_pending(ui, RESET) {
+        if button(ui, theme, said.reset, size, ButtonStyle::Other).clicked() {
+            set_pending(ui, Some(RESET));
+        }
+        return false;
+    }
+    let question = RichText::new(said.reset_question);
+    ui.label(question.size(21.0).color(theme.ink));
+    let mut is_confirmed = false;
+    ui.horizontal_wrapped(|ui| {
+        if button(ui, theme, said.cancel, size, ButtonStyle::Main).clicked() {
+            set_pending(ui, None);
+        }
+        if button(ui, theme, said.reset_now, size, ButtonStyle::Other).clicked() {
+            set_pending(ui, None);
+            is_confirmed = true;
+        }
+    });
+    is_confirmed
 }
 
 fn section(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui)) {

@@ -3,8 +3,9 @@
 use crate::game::Game;
 use crate::platform::HAS_DIALOG;
 use app_shell::Theme;
+use app_shell::theme::PAGE;
 use app_shell::widgets::{
-    ButtonStyle, FADE, LETTERS, RING, button, fitted, focus_ring, note_hovered, plain_button,
+    ButtonStyle, FADE, LETTERS, RING, button, focus_ring, note_hovered, plain_button,
 };
 use egui::{
     Align, Align2, Color32, FocusDirection, FontId, Id, Key, Layout, Pos2, Rect, Response, Role,
@@ -14,8 +15,6 @@ use tamaire_sound::Menu;
 
 /// Margin between the window and a page [points].
 pub const EDGE: Vec2 = vec2(28.0, 22.0);
-/// Background of a page.
-pub const PAPER: Color32 = Color32::from_rgb(255, 248, 238);
 /// Minimum width of a row with the name beside its widget [points]; in a narrower row the name is above.
 const LEAST_ROW: f32 = 560.0;
 
@@ -25,7 +24,7 @@ pub type Act = fn(&mut Game);
 /// Covers the world behind a menu with translucent paper.
 pub fn dim_background(ui: &Ui, strength: u8) {
     ui.painter()
-        .rect_filled(ui.max_rect(), 0.0, PAPER.gamma_multiply_u8(strength));
+        .rect_filled(ui.max_rect(), 0.0, PAGE.gamma_multiply_u8(strength));
 }
 
 /// Draws text centred at `at`.
@@ -99,43 +98,14 @@ pub fn slider(
 ) -> Response {
     row(ui, theme, name, |ui| {
         let width = (ui.available_width() - 84.0).max(60.0);
-        let (rect, mut response) =
-            ui.allocate_exact_size(vec2(width, 36.0), Sense::click_and_drag());
-        note_hovered(ui, &response);
-        let before = *value;
-        let track = Rect::from_center_size(rect.center(), vec2(rect.width() - 28.0, 12.0));
-        if let Some(pointer) = response.interact_pointer_pos() {
-            let share = ((pointer.x - track.left()) / track.width()).clamp(0.0, 1.0);
-            *value = low + (high - low) * share;
+        let (mut response, asked) = track(ui, theme, name, *value, [low, high], step, width);
+        if let Some(asked) = asked {
+            let chosen = (step * (asked / step).round()).clamp(low, high);
+            if chosen != *value {
+                *value = chosen;
+                response.mark_changed();
+            }
         }
-        if response.has_focus() {
-            let filter = egui::EventFilter {
-                horizontal_arrows: true,
-                ..Default::default()
-            };
-            ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-            let pressed = |key| ui.input(|input| input.num_presses(key)) as f32;
-            *value += step * (pressed(Key::ArrowRight) - pressed(Key::ArrowLeft));
-        }
-        use egui::accesskit::Action;
-        let asked = |action| {
-            ui.input(|input| input.num_accesskit_action_requests(response.id, action)) as f32
-        };
-        *value += step * (asked(Action::Increment) - asked(Action::Decrement));
-        *value = (step * (*value / step).round()).clamp(low, high);
-        if *value != before {
-            response.mark_changed();
-        }
-        let shown = *value;
-        response.widget_info(|| WidgetInfo::slider(true, f64::from(shown), name));
-        let share = (*value - low) / (high - low);
-        let knob = pos2(track.left() + share * track.width(), track.center().y);
-        let painter = ui.painter();
-        painter.rect_filled(track, 6.0, theme.button);
-        let done = Rect::from_min_max(track.min, pos2(knob.x, track.bottom()));
-        painter.rect_filled(done, 6.0, theme.accent);
-        painter.circle(knob, 14.0, theme.card, Stroke::new(4.0, theme.accent));
-        focus_ring(ui, &response, rect, 18.0, theme);
         let text = format!("{:.0} %", 100.0 * *value);
         let font = FontId::proportional(20.0);
         let (rect, _) = ui.allocate_exact_size(vec2(74.0, 36.0), Sense::hover());
@@ -148,6 +118,58 @@ pub fn slider(
         );
         response
     })
+}
+
+/// Shows the track and the knob of a slider, `width` points wide. Returns the value that the player asks for in
+/// this frame by pointer or keys, if any.
+pub fn track(
+    ui: &mut Ui,
+    theme: &Theme,
+    name: &str,
+    value: f32,
+    [low, high]: [f32; 2],
+    step: f32,
+    width: f32,
+) -> (Response, Option<f32>) {
+    use egui::accesskit::Action;
+    let (rect, response) = ui.allocate_exact_size(vec2(width, 36.0), Sense::click_and_drag());
+    note_hovered(ui, &response);
+    let track = Rect::from_center_size(rect.center(), vec2(rect.width() - 28.0, 12.0));
+    let mut asked = response.interact_pointer_pos().map(|pointer| {
+        let share = ((pointer.x - track.left()) / track.width()).clamp(0.0, 1.0);
+        low + (high - low) * share
+    });
+    let has_focus = response.has_focus();
+    if has_focus {
+        let filter = egui::EventFilter {
+            horizontal_arrows: true,
+            ..Default::default()
+        };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    }
+    let presses = ui.input(|input| {
+        let pressed = |key| match has_focus {
+            true => input.num_presses(key) as f32,
+            false => 0.0,
+        };
+        let requests = |action| input.num_accesskit_action_requests(response.id, action) as f32;
+        pressed(Key::ArrowRight) - pressed(Key::ArrowLeft) + requests(Action::Increment)
+            - requests(Action::Decrement)
+    });
+    if presses != 0.0 {
+        asked = Some((asked.unwrap_or(value) + step * presses).clamp(low, high));
+    }
+    let shown = asked.unwrap_or(value);
+    response.widget_info(|| WidgetInfo::slider(true, f64::from(shown), name));
+    let share = ((shown - low) / (high - low)).clamp(0.0, 1.0);
+    let knob = pos2(track.left() + share * track.width(), track.center().y);
+    let painter = ui.painter();
+    painter.rect_filled(track, 6.0, theme.button);
+    let done = Rect::from_min_max(track.min, pos2(knob.x, track.bottom()));
+    painter.rect_filled(done, 6.0, theme.accent);
+    painter.circle(knob, 14.0, theme.card, Stroke::new(4.0, theme.accent));
+    focus_ring(ui, &response, rect, 18.0, theme);
+    (response, asked)
 }
 
 /// Shows a choice between a few visible options; returns whether it changed.
@@ -176,6 +198,13 @@ pub fn choice<T: Copy + PartialEq>(
             .fold(60.0, f32::max)
             + 36.0;
         ui.spacing_mut().item_spacing.x = 2.0 * RING;
+        // Narrower buttons rather than a wider card, if all options are in one row.
+        let count = options.len() as f32;
+        let room = (ui.available_width() - (count - 1.0) * 2.0 * RING) / count;
+        let width = match ui.layout().main_wrap() {
+            true => width,
+            false => width.min(room),
+        };
         for &(option, text) in options {
             let is_chosen = *value == option;
             // A dot marks the chosen option, since colour alone would not be visible to everyone.
@@ -203,11 +232,14 @@ pub fn row<R>(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut
     // In a narrow row the name is above its widget.
     let is_above = all < LEAST_ROW;
     let width = if is_above { all } else { 0.4 * all };
+    // A long name takes two lines, so that all names have letters of one size.
+    let font = FontId::proportional(21.0);
+    let galley = { ui.painter() }.layout(name.to_string(), font, theme.ink, width - 8.0);
     let head = |ui: &mut Ui, height: f32| {
+        let height = height.max(galley.size().y);
         let (rect, _) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
-        let galley = fitted(ui.painter(), name, 21.0, width - 8.0, theme.ink);
         let at = rect.left_center() - vec2(0.0, 0.5 * galley.size().y);
-        ui.painter().galley(at, galley, theme.ink);
+        ui.painter().galley(at, galley.clone(), theme.ink);
     };
     if is_above {
         head(ui, 30.0);
@@ -339,7 +371,7 @@ pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui))
     for (edge, inwards, more) in [(seen.top(), 1.0, above), (seen.bottom(), -1.0, below)] {
         let far = edge + inwards * FADE.min(more.max(0.0));
         let mut mesh = egui::Mesh::default();
-        for (y, colour) in [(edge, PAPER), (far, PAPER.gamma_multiply(0.0))] {
+        for (y, colour) in [(edge, PAGE), (far, PAGE.gamma_multiply(0.0))] {
             for x in [seen.left(), seen.right()] {
                 mesh.colored_vertex(pos2(x, y), colour);
             }
@@ -385,18 +417,23 @@ fn column_id(width: f32) -> Id {
     Id::unique(("column", width as u32))
 }
 
+/// Returns the part of the screen that a [`column`] can use.
+pub fn column_part(screen: Rect, width: f32, across: f32) -> Rect {
+    let screen = screen.shrink(AROUND);
+    let width = width.min(screen.width());
+    let left = screen.left() + across * (screen.width() - width);
+    Rect::from_x_y_ranges(left..=left + width, screen.y_range())
+}
+
 /// Shows a vertically centred column of `width` points, at `across` from 0 (left) to 1 (right). It scrolls if
 /// it is higher than the screen.
 pub fn column<R>(ui: &mut Ui, width: f32, across: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
     let screen = ui.max_rect().shrink(AROUND);
     let id = column_id(width);
     let known = ui.data(|data| data.get_temp::<f32>(id));
-    let size = vec2(
-        width.min(screen.width()),
-        known.unwrap_or(screen.height()).min(screen.height()),
-    );
-    let left = screen.left() + across * (screen.width() - size.x);
-    let rect = Rect::from_min_size(pos2(left, screen.center().y - 0.5 * size.y), size);
+    let part = column_part(ui.max_rect(), width, across);
+    let height = known.unwrap_or(screen.height()).min(screen.height());
+    let rect = Rect::from_center_size(part.center(), vec2(part.width(), height));
     let centred = egui::Layout::top_down(egui::Align::Center);
     let builder = egui::UiBuilder::new().max_rect(rect).layout(centred);
     let fill = |ui: &mut Ui| {

@@ -55,6 +55,7 @@ pub(super) const WORDS: Words = Words {
         ]
     },
     new_best: "New best!",
+    hopeless: "Too little of it is left to win.",
     watch: "Watch",
     race: "Race it",
     save: "Save replay",
@@ -62,6 +63,8 @@ pub(super) const WORDS: Words = Words {
     confirm: "Really?",
     remove_level: "Remove from list",
     saved: "Saved",
+    open_folder: "Open folder",
+    folder_not_opened: "The folder could not be opened:",
     slow: |share| {
         format!(
             "This device is too slow for this level: running at {:.0} % speed.",
@@ -170,6 +173,9 @@ pub(super) const WORDS: Words = Words {
     controls: "Controls",
     press_any: "Press a key or button…",
     reset: "Restore default settings",
+    reset_question: "Restore all settings to their defaults?",
+    reset_now: "Restore",
+    cancel: "Cancel",
     sound_section: "Sound",
     play_section: "Play",
     look_section: "Display",
@@ -233,6 +239,7 @@ pub(super) const WORDS: Words = Words {
         InputMethod::Fingers => None,
     },
     watching: "Replay",
+    position: "Position in the replay",
     damaged: |refused, aside| match aside {
         Some(aside) => {
             format!("This could not be read: {refused}. The original was kept as {aside}")

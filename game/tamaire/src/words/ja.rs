@@ -57,6 +57,7 @@ pub(super) const WORDS: Words = Words {
         ]
     },
     new_best: "新記録！",
+    hopeless: "のこりが たりなくて、もうクリアできないよ。",
     watch: "見る",
     race: "きょうそう",
     save: "リプレイをのこす",
@@ -64,6 +65,8 @@ pub(super) const WORDS: Words = Words {
     confirm: "けしていい？",
     remove_level: "リストからはずす",
     saved: "のこしました",
+    open_folder: "フォルダーをひらく",
+    folder_not_opened: "フォルダーを ひらけませんでした：",
     slow: |share| {
         format!(
             "このステージは この機械には重すぎるので、{:.0} %の はやさで動いています。",
@@ -170,6 +173,9 @@ pub(super) const WORDS: Words = Words {
     controls: "操作",
     press_any: "キーかボタンをおしてね…",
     reset: "初期設定にもどす",
+    reset_question: "設定を ぜんぶ はじめの状態に もどしますか？",
+    reset_now: "もどす",
+    cancel: "やめる",
     sound_section: "音",
     play_section: "あそび",
     look_section: "見た目",
@@ -233,6 +239,7 @@ pub(super) const WORDS: Words = Words {
         InputMethod::Fingers => None,
     },
     watching: "リプレイ",
+    position: "リプレイの位置",
     damaged: |refused, aside| match aside {
         Some(aside) => {
             format!(

@@ -27,6 +27,7 @@ pub struct Words {
     pub wish: fn(&Wish) -> String,
     pub summary: fn(&Outcome) -> [(&'static str, String); 4],
     pub new_best: &'static str,
+    pub hopeless: &'static str,
     pub watch: &'static str,
     pub race: &'static str,
     pub save: &'static str,
@@ -34,6 +35,8 @@ pub struct Words {
     pub confirm: &'static str,
     pub remove_level: &'static str,
     pub saved: &'static str,
+    pub open_folder: &'static str,
+    pub folder_not_opened: &'static str,
     pub slow: fn(f64) -> String,
     pub licences: &'static str,
     pub link: &'static str,
@@ -98,6 +101,9 @@ pub struct Words {
     pub controls: &'static str,
     pub press_any: &'static str,
     pub reset: &'static str,
+    pub reset_question: &'static str,
+    pub reset_now: &'static str,
+    pub cancel: &'static str,
     pub sound_section: &'static str,
     pub play_section: &'static str,
     pub look_section: &'static str,
@@ -112,6 +118,7 @@ pub struct Words {
     /// deeper and less deep. `None` for an input method without such keys.
     pub look_inside: fn(InputMethod, &[String; 2]) -> Option<String>,
     pub watching: &'static str,
+    pub position: &'static str,
     /// Message that names the saved data that could not be read. If there is an unchanged copy, the message
     /// also names its location.
     pub damaged: fn(&str, Option<&str>) -> String,

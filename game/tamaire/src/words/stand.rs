@@ -34,6 +34,8 @@ pub struct StandWords {
     pub exported: fn(&str) -> String,
     pub end: &'static str,
     pub ends: &'static str,
+    pub end_now: &'static str,
+    pub keep_open: &'static str,
     pub off: &'static str,
 }
 
@@ -95,6 +97,8 @@ const ENGLISH: StandWords = StandWords {
     exported: |path| format!("Copied to {path}"),
     end: "End the game",
     ends: "End the game? The screen stays dark until the machine or the service is started again.",
+    end_now: "Yes, end it",
+    keep_open: "No, keep it open",
     off: "off",
 };
 
@@ -146,6 +150,8 @@ const JAPANESE: StandWords = StandWords {
     exported: |path| format!("コピーしました：{path}"),
     end: "ゲームを おわる",
     ends: "ゲームを おわりますか？ コンピューターかサービスを もう一度 起動するまで 画面は暗いままです。",
+    end_now: "はい、おわる",
+    keep_open: "いいえ、つづける",
     off: "切",
 };
 

@@ -170,7 +170,17 @@ fn single_switch_is_never_trapped() {
     window.get_by_label("One-switch scanning: Off").click();
     frames(&mut window, 2);
     assert!(game(&mut window).settings.scanning.is_on());
+    game(&mut window).settings.speed = 0.6;
     click(&mut window, "Restore default settings");
+    click(&mut window, "Cancel");
+    assert_eq!(
+        game(&mut window).settings.speed,
+        0.6,
+        "the reset asks first"
+    );
+    click(&mut window, "Restore default settings");
+    click(&mut window, "Restore");
+    assert_eq!(game(&mut window).settings.speed, 1.0);
     assert!(game(&mut window).settings.scanning.is_on());
     // The switch also leaves a round that is only watched.
     game(&mut window).start(0);

@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 use std::time::SystemTime;
 use tamaire::game::{Game, Screen};
+use tamaire::input::Scanning;
 use tamaire::platform::{Entry, Files, Kind, Nowhere, Sound, Storage, UpdateEntry};
 
 /// Storage in memory that records the writing threads, and that can be full.
@@ -23,6 +24,8 @@ struct Inside {
     kept: BTreeMap<(Kind, String), Vec<u8>>,
     writers: Vec<ThreadId>,
     is_full: bool,
+    /// Locations whose folders were opened.
+    opened: Vec<String>,
 }
 
 impl Memory {
@@ -74,6 +77,15 @@ impl Storage for Memory {
 
     fn location(&self, _: Kind, name: &str) -> String {
         name.into()
+    }
+
+    fn has_folders(&self) -> bool {
+        true
+    }
+
+    fn open_folder_of(&self, location: &str) -> io::Result<()> {
+        self.0.lock().unwrap().opened.push(location.into());
+        Ok(())
     }
 }
 
@@ -236,6 +248,38 @@ fn photo_and_clip_are_saved_at_reported_path() {
         assert!(bytes.starts_with(magic), "{button}");
         assert!(notices(&window).contains(&file.display().to_string()));
     }
+}
+
+#[test]
+fn message_about_saved_file_leaves_result_visible_and_opens_folder() {
+    let memory = Memory::default();
+    let mut window = open(Files::on(memory.clone()), egui::vec2(1280.0, 800.0), 0.25);
+    start(&mut window, "classic");
+    win(&mut window);
+    click(&mut window, "Save replay");
+    wait_for_files(&mut window);
+    assert!(
+        notices(&window).contains("Saved classic-1"),
+        "{}",
+        notices(&window)
+    );
+    let folder = button(&window, "Open folder").rect();
+    for name in ["Play again", "Save replay", "Levels"] {
+        let covered = button(&window, name).rect();
+        assert!(
+            folder.left() > covered.right(),
+            "{name}: {covered:?}, {folder:?}"
+        );
+    }
+    click(&mut window, "Open folder");
+    assert_eq!(memory.0.lock().unwrap().opened, ["classic-1"]);
+    // A file manager cannot be operated with a single switch.
+    game(&mut window).notices.clear();
+    game(&mut window).settings.scanning = Scanning::Slow;
+    game(&mut window).keep_replay();
+    wait_for_files(&mut window);
+    assert!(notices(&window).contains("Saved classic-2"));
+    assert!(window.query_by_label("Open folder").is_none());
 }
 
 #[test]

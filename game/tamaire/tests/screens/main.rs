@@ -2,6 +2,7 @@
 //! and robustness.
 
 mod clicks;
+mod contrast;
 mod fingers;
 mod help;
 mod hostile;

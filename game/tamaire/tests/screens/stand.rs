@@ -1,8 +1,10 @@
 //! Public stand: visitors come, play and go, and staff use its pages.
 
+use crate::contrast;
 use crate::pads::about;
 use crate::window::*;
 use app_shell::{Clock, Pads};
+use egui::accesskit::Role;
 use egui::{Event, Key, PointerButton, Pos2, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -108,7 +110,10 @@ impl Shown {
         for _ in 0..(seconds / DEFAULT_TICK) as usize {
             game.update(DEFAULT_TICK);
             // Events left in the context by an earlier frame would count as input.
-            ctx.input_mut(|input| input.events.clear());
+            ctx.input_mut(|input| {
+                input.events.clear();
+                input.raw.events.clear();
+            });
             stand.pass(game, &ctx, DEFAULT_TICK);
         }
     }
@@ -121,8 +126,16 @@ impl Shown {
     fn win(&mut self, kind: BotKind) {
         drive(game(&mut self.window), kind, |game| game.bout.won.is_none());
         game(&mut self.window).update(2.0);
-        frames(&mut self.window, 30);
+        frames(&mut self.window, 50);
         assert_eq!(screen(&self.window), Screen::Result);
+    }
+
+    /// Chooses the first level with `key`, and lets a bot win it.
+    fn win_first(&mut self, key: Key) {
+        frames(&mut self.window, 50);
+        press(&mut self.window, key);
+        assert_eq!(self.phase(), Phase::Visit);
+        self.win(BotKind::Squeeze);
     }
 
     /// Closes the stand and returns the contents of its logbook.
@@ -301,8 +314,9 @@ fn staff_enters_pin_and_changes_settings() {
         click(&mut shown.window, digit);
     }
     assert_eq!(shown.phase(), Phase::PinEntry, "wrong PIN");
-    for digit in ["2", "0", "0", "4"] {
-        click(&mut shown.window, digit);
+    // A mistyped digit is deleted.
+    for key in ["2", "0", "7", "Delete", "0", "4"] {
+        click(&mut shown.window, key);
     }
     assert!(matches!(shown.phase(), Phase::Staff(_)));
     let (visits, _, _) = read(shown.folder.path());
@@ -317,15 +331,182 @@ fn staff_enters_pin_and_changes_settings() {
             .unwrap()
             .contains("language = \"japanese\"")
     );
-    let end = Language::Japanese.at_stand().end;
-    click(&mut shown.window, end);
-    assert!(!shown.stand.borrow().is_ended, "ending needs confirmation");
+    let said = Language::Japanese.at_stand();
+    let at = button(&shown.window, said.end).rect().center();
+    click(&mut shown.window, said.end);
+    for pressed in [true, false] {
+        button_at(&mut shown.window, at, pressed);
+    }
+    assert!(
+        !shown.stand.borrow().is_ended,
+        "a second press at the same place ends nothing"
+    );
+    assert_eq!(shown.phase(), Phase::Staff(StaffPage::End));
+    click(&mut shown.window, said.keep_open);
+    assert_eq!(shown.phase(), Phase::Staff(StaffPage::Settings));
     click(&mut shown.window, "もどる");
     assert_eq!(shown.phase(), Phase::Attract);
     assert_eq!(
         game(&mut shown.window).settings.language,
         Language::Japanese
     );
+}
+
+/// Opens a stand with a page for QR codes.
+fn with_codes(size: Vec2) -> Shown {
+    let page = (
+        "#page = \"https://…/\"",
+        "page = \"https://museum.example/tamaire/\"",
+    );
+    shown(size, &[page])
+}
+
+#[test]
+fn code_is_shown_twice_as_long() {
+    let mut shown = with_codes(vec2(1280.0, 800.0));
+    shown.touch();
+    shown.win(BotKind::Squeeze);
+    frames(&mut shown.window, 130);
+    assert!(shown.stand.borrow().to_take_home().is_some());
+    // Input counts as the start of the time without input.
+    press(&mut shown.window, Key::F);
+    shown.rest(39.0);
+    assert_eq!(shown.stand.borrow().attention, Attention::There);
+    shown.rest(3.0);
+    let attention = shown.stand.borrow().attention;
+    assert!(
+        matches!(attention, Attention::Leaving(left) if left > 0.8),
+        "{attention:?}"
+    );
+    assert_eq!(shown.stand.borrow().countdown(), 20.0);
+    shown.rest(17.0);
+    assert_eq!(shown.phase(), Phase::Visit);
+    shown.rest(3.0);
+    assert_eq!(shown.phase(), Phase::Attract);
+}
+
+#[test]
+fn winner_is_visible_between_result_and_code() {
+    for size in [
+        vec2(1280.0, 800.0),
+        vec2(1920.0, 1080.0),
+        vec2(1080.0, 1920.0),
+    ] {
+        let mut shown = with_codes(size);
+        shown.touch();
+        shown.win(BotKind::Squeeze);
+        frames(&mut shown.window, 130);
+        let code = { shown.window.query_all_by_role(Role::Image) }.next();
+        let code = code.expect("a code is shown").rect();
+        let again = game(&mut shown.window).words().play_again;
+        let card = button(&shown.window, again).rect();
+        let bout = &shown.window.state().game.bout;
+        let (view, level) = (bout.view.unwrap(), bout.round().level());
+        let basket = level.game().basket.as_ref().unwrap();
+        let middle = view.to_screen(fuwafuwa::Vec3::from(basket.centre));
+        // Half the size of the body in the basket.
+        let face = 0.25 * view.scale;
+        for covered in [code, card] {
+            let covered = covered.expand(face);
+            assert!(
+                !covered.contains(middle),
+                "{size}: {middle:?} in {covered:?}"
+            );
+        }
+        assert!(
+            shown
+                .window
+                .ctx
+                .content_rect()
+                .shrink(face)
+                .contains(middle),
+            "{middle:?}"
+        );
+    }
+}
+
+#[test]
+fn press_that_began_before_result_chooses_nothing() {
+    let mut shown = shown(vec2(1280.0, 800.0), &[]);
+    shown.touch();
+    shown.win(BotKind::Squeeze);
+    let again = game(&mut shown.window).words().play_again;
+    let at = button(&shown.window, again).rect().center();
+    // The same win once more, now with the button held at the place where the choice appears.
+    click(&mut shown.window, again);
+    let drive_on = |game: &Game| game.bout.won.is_none();
+    drive(game(&mut shown.window), BotKind::Squeeze, drive_on);
+    button_at(&mut shown.window, at, true);
+    game(&mut shown.window).update(2.0);
+    frames(&mut shown.window, 90);
+    button_at(&mut shown.window, at, false);
+    frames(&mut shown.window, 3);
+    assert_eq!(
+        screen(&shown.window),
+        Screen::Result,
+        "the press began before"
+    );
+    for pressed in [true, false] {
+        button_at(&mut shown.window, at, pressed);
+    }
+    frames(&mut shown.window, 2);
+    assert_eq!(screen(&shown.window), Screen::Play, "a new press chooses");
+}
+
+#[test]
+fn choice_appears_settles_and_explains_its_signs() {
+    let levels = ("[\"classic\"]", "[\"classic\", \"neck\"]");
+    let mut shown = shown(
+        vec2(1280.0, 800.0),
+        &[levels, ("\"japanese\"", "\"english\"")],
+    );
+    shown.touch();
+    shown.win_first(Key::Enter);
+    click(&mut shown.window, "Another level");
+    assert_eq!(shown.phase(), Phase::Choice);
+    // The press that opened the choice may be followed at once by another one.
+    press(&mut shown.window, Key::Enter);
+    assert_eq!(
+        shown.phase(),
+        Phase::Choice,
+        "nobody has seen the choice yet"
+    );
+    frames(&mut shown.window, 50);
+    shown.window.get_by_label("star earned");
+    press(&mut shown.window, Key::Enter);
+    assert_eq!(shown.phase(), Phase::Visit);
+}
+
+#[test]
+fn texts_of_the_stand_have_contrast() {
+    let pin = ("#pin = \"…\"", "pin = \"2004\"");
+    let levels = ("[\"classic\"]", "[\"classic\", \"neck\"]");
+    let mut shown = shown(vec2(1280.0, 800.0), &[pin, levels]);
+    let mut count = contrast::check(&mut shown.window, "attract");
+    shown.window.set_size(vec2(600.0, 1000.0));
+    frames(&mut shown.window, 3);
+    count += contrast::check(&mut shown.window, "attract, upright");
+    shown.window.set_size(vec2(1280.0, 800.0));
+    shown.touch();
+    frames(&mut shown.window, 50);
+    count += contrast::check(&mut shown.window, "choice");
+    press(&mut shown.window, Key::Enter);
+    frames(&mut shown.window, 2);
+    count += contrast::check(&mut shown.window, "play");
+    shown.rest(24.0);
+    frames(&mut shown.window, 2);
+    count += contrast::check(&mut shown.window, "leaving");
+    shown.touch();
+    shown.win(BotKind::Squeeze);
+    count += contrast::check(&mut shown.window, "result");
+    let pages = StaffPage::ALL.into_iter().chain([StaffPage::End]);
+    let phases = [Phase::PinEntry].into_iter().chain(pages.map(Phase::Staff));
+    for phase in phases {
+        shown.stand.borrow_mut().phase = phase;
+        frames(&mut shown.window, 4);
+        count += contrast::check(&mut shown.window, &format!("{phase:?}"));
+    }
+    assert!(count > 70, "{count} texts");
 }
 
 #[test]

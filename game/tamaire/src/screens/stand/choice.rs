@@ -1,6 +1,6 @@
 //! Choice of a level at the stand.
 
-use super::super::levels::tile;
+use super::super::levels::{LEGEND, legend, tile};
 use super::super::widgets::{dim_background, focus_first};
 use super::language::above;
 use crate::exhibit::Stand;
@@ -33,14 +33,14 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, stage: &mut Stage, ui: &m
     let (across, down) = if is_tall { (1.0, count) } else { (count, 1.0) };
     let room = vec2(
         screen.width(),
-        screen.height() - headline.size().y - 4.0 * GAP,
+        screen.height() - headline.size().y - LEGEND - 5.0 * GAP,
     );
     let wide = ((room.x - GAP) / across - GAP).min(WIDE);
     let high = (room.y / down - GAP - BELOW).max(40.0) / 0.62 + 20.0;
     let wide = wide.min(high);
     let size = vec2(wide, 0.62 * (wide - 20.0) + BELOW);
     let all = vec2(across * (size.x + GAP) - GAP, down * (size.y + GAP) - GAP);
-    let middle = screen.center() + vec2(0.0, 0.5 * headline.size().y);
+    let middle = screen.center() + vec2(0.0, 0.5 * (headline.size().y - LEGEND - GAP));
     let top = middle.y - 0.5 * all.y - GAP - headline.size().y;
     let at = pos2(screen.center().x - 0.5 * headline.size().x, top);
     ui.painter().galley(at, headline, theme.ink);
@@ -65,6 +65,13 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, stage: &mut Stage, ui: &m
             chosen = Some(index);
         }
     }
+    let below = Rect::from_min_max(
+        pos2(screen.left() + GAP, corner.y + all.y + GAP),
+        pos2(screen.right() - GAP, screen.bottom()),
+    );
+    ui.scope_builder(egui::UiBuilder::new().max_rect(below), |ui| {
+        legend(ui, game);
+    });
     if let Some(index) = chosen {
         game.blip(Menu::Confirm);
         stand.choose(game, index);

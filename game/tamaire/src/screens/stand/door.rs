@@ -14,8 +14,10 @@ const DIGITS: [[char; 3]; 4] = [
     ['1', '2', '3'],
     ['4', '5', '6'],
     ['7', '8', '9'],
-    [' ', '0', ' '],
+    [' ', '0', DELETE],
 ];
+/// Key that deletes the last digit.
+const DELETE: char = '⌫';
 
 pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     dim_background(ui, 255);
@@ -29,6 +31,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     };
     let typed = typed_digit(ui);
     let mut leaves = ui.input(|input| input.key_pressed(egui::Key::Escape));
+    let mut deletes = ui.input(|input| input.key_pressed(egui::Key::Backspace));
     let mut digit = typed;
     let width = 3.0 * KEY.x + 2.0 * GAP;
     column(ui, width + 60.0, 0.5, |ui| {
@@ -47,13 +50,18 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
                             ui.allocate_exact_size(KEY, Sense::hover());
                             continue;
                         }
-                        let response =
-                            button(ui, &theme, &key.to_string(), KEY, ButtonStyle::Other);
+                        let text = match key {
+                            DELETE => game.words().delete.to_string(),
+                            digit => digit.to_string(),
+                        };
+                        let response = button(ui, &theme, &text, KEY, ButtonStyle::Other);
                         if key == '1' {
                             focus_first(ui, &response);
                         }
-                        if response.clicked() {
-                            digit = Some(key);
+                        match response.clicked() {
+                            true if key == DELETE => deletes = true,
+                            true => digit = Some(key),
+                            false => {}
                         }
                     }
                 });
@@ -71,6 +79,9 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     if leaves {
         game.blip(Menu::Back);
         stand.end_and_reset(game);
+    } else if deletes {
+        game.blip(Menu::Back);
+        stand.entrance.entered.pop();
     } else if let Some(digit) = digit {
         game.blip(Menu::Confirm);
         stand.enter(game, digit);

@@ -9,11 +9,13 @@ mod result;
 mod staff;
 
 use super::attendant::StandController;
+use super::title::draw_name;
 use super::widgets::{dim_background, words};
 use super::{notices, play};
 use crate::exhibit::{Phase, Stand};
 use crate::game::{Game, Screen};
 use crate::look::Stage;
+use app_shell::theme::DIMMED;
 use app_shell::widgets::fitted;
 use egui::{Color32, Context, CursorIcon, Rect, Ui, ViewportCommand, pos2, vec2};
 
@@ -96,7 +98,7 @@ impl StandController for CrashScreen {
 
 /// Shows the name of the game and invites visitors to play.
 fn attract(game: &Game, ui: &Ui) {
-    dim_background(ui, 40);
+    dim_background(ui, DIMMED);
     let (theme, screen) = (game.theme(), ui.max_rect());
     let time = match game.settings.reduced_motion {
         true => 0.0,
@@ -108,16 +110,7 @@ fn attract(game: &Game, ui: &Ui) {
         screen.top() + 0.17 * screen.height() + bob,
     );
     let size = 0.19 * screen.size().min_elem();
-    for (by, colour) in [(5.0, Color32::from_black_alpha(40)), (0.0, theme.accent)] {
-        words(ui, top + vec2(0.0, by), "玉入れ", size, colour);
-    }
-    words(
-        ui,
-        top + vec2(0.0, 0.72 * size),
-        "tamaire",
-        0.32 * size,
-        theme.ink,
-    );
+    draw_name(game, ui, top, size);
     let call = game.settings.language.at_stand().call;
     let beat = 1.0 + 0.04 * (3.0 * time).sin() as f32;
     let width = screen.width() - 72.0;
@@ -149,7 +142,7 @@ fn calm(game: &Game, ui: &Ui, text: &str) {
     ui.painter().rect_filled(screen, 0.0, theme.paper);
     let size = 0.16 * screen.size().min_elem();
     let middle = screen.center() - vec2(0.0, 0.4 * size);
-    words(ui, middle, "玉入れ", size, theme.accent.gamma_multiply(0.6));
+    words(ui, middle, "玉入れ", size, theme.accent);
     let galley = fitted(ui.painter(), text, 30.0, screen.width() - 60.0, theme.faint);
     let at = middle + vec2(0.0, size) - 0.5 * galley.size();
     ui.painter().galley(at, galley, theme.faint);

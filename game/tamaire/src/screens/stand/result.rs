@@ -1,5 +1,6 @@
 //! Result of a round at the stand: play again, try the other route, and a code to take the round home.
 
+use super::super::play;
 use super::super::result::{headline, line, numbers, other};
 use super::super::widgets::{card, column_beside, dim_background, focus_first};
 use super::code;
@@ -12,9 +13,11 @@ use tamaire_play::Route;
 use tamaire_sound::Menu;
 
 /// Width of the card [points].
-const WIDE: f32 = 470.0;
+const WIDE: f32 = 410.0;
 /// Gap between texts and buttons of the card [points].
 const GAP: f32 = 12.0;
+/// Distance of the QR code from the edge of the screen [points].
+const EDGE: f32 = 12.0;
 /// Maximum side length of the QR code [points].
 const CODE: f32 = 360.0;
 
@@ -40,8 +43,8 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     let has_others = stand.config.levels.0.len() > 1;
     let area = UiBuilder::new().max_rect(above(ui.max_rect()));
     let show = |ui: &mut Ui| {
-        column_beside(ui, WIDE, (0.05, false), |ui| {
-            card(ui, &theme, |ui| {
+        column_beside(ui, WIDE, (0.0, false), |ui| {
+            let wish = card(ui, &theme, |ui| {
                 ui.spacing_mut().item_spacing = Vec2::ZERO;
                 headline(ui, &theme, said, outcome.route);
                 ui.add_space(GAP);
@@ -68,25 +71,45 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
                     }
                 }
                 wish
-            })
+            });
+            (wish, ui.min_rect())
         })
     };
-    let wish = ui.scope_builder(area, show).inner;
+    let (wish, card_rect) = ui.scope_builder(area, show).inner;
+    let screen = ui.max_rect();
+    let most = most_of_code(screen);
+    let place = place_of_code(screen, most);
+    let code = stand.coming_code().map(|_| place);
+    play::note_free_part(ui, between(screen, code, card_rect));
     if let Some(home) = stand.to_take_home() {
-        let screen = ui.max_rect();
-        let is_upright = screen.width() < screen.height();
-        let most = CODE.min(if is_upright { 0.6 } else { 0.42 } * screen.width());
-        let place = place_of_code(ui.max_rect(), most);
         ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
             code::show(ui, game, home, most)
         });
     }
-    if let Some(wish) = wish.filter(|_| stand.is_result_settled()) {
+    if let Some(wish) = wish.filter(|_| stand.is_settled()) {
         game.blip(Menu::Confirm);
         match wish {
             ResultAction::Again(route) => stand.try_again(game, route),
             ResultAction::Another => stand.choose_again(game),
         }
+    }
+}
+
+/// Returns the maximum side length of the QR code [points].
+fn most_of_code(screen: Rect) -> f32 {
+    let is_upright = screen.width() < screen.height();
+    CODE.min(if is_upright { 0.6 } else { 0.3 } * screen.width())
+}
+
+/// Returns the part of the screen between the card of the result and the QR code, if there is one.
+fn between(screen: Rect, code: Option<Rect>, card: Rect) -> Rect {
+    match screen.width() < screen.height() {
+        true => screen
+            .with_min_y(code.map_or(screen.top(), |code| code.bottom()))
+            .with_max_y(card.top()),
+        false => screen
+            .with_min_x(card.right())
+            .with_max_x(code.map_or(screen.right(), |code| code.left())),
     }
 }
 
@@ -97,7 +120,7 @@ fn place_of_code(screen: Rect, side: f32) -> Rect {
     let at = match screen.width() < screen.height() {
         true => pos2(screen.center().x - 0.5 * size.x, screen.top() + 20.0),
         false => pos2(
-            screen.right() - size.x - 30.0,
+            screen.right() - size.x - EDGE,
             screen.center().y - 0.5 * size.y,
         ),
     };

@@ -9,7 +9,7 @@ use crate::exhibit::staff::StaffPage;
 use crate::exhibit::{Phase, Stand};
 use crate::game::{Game, Screen};
 use crate::platform::memory;
-use crate::words::Language;
+use crate::words::{Language, StandWords};
 use app_shell::Theme;
 use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{RichText, Sense, Ui, vec2};
@@ -60,11 +60,12 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: StaffPage, ui: &mu
             wish = Some(StaffAction::Leave);
         }
         page(ui, "staff", WIDE, |ui| {
-            let (does, deed) = match shown {
-                StaffPage::Today => (said.export, StaffAction::Export),
-                StaffPage::Health => (said.try_stick, StaffAction::TryStick),
-                StaffPage::Settings => (said.end, StaffAction::See(StaffPage::End)),
-                StaffPage::End => (said.end, StaffAction::End),
+            let deed = match shown {
+                StaffPage::Today => Some((said.export, StaffAction::Export)),
+                StaffPage::Health => Some((said.try_stick, StaffAction::TryStick)),
+                StaffPage::Settings => Some((said.end, StaffAction::See(StaffPage::End))),
+                // The button that confirms the end is elsewhere, so that a double press ends nothing.
+                StaffPage::End => None,
             };
             // Width of a page button. The button for the action of the current page is one and a half times
             // as wide.
@@ -78,14 +79,9 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: StaffPage, ui: &mu
                     }
                 }
                 ui.add_space(GAP);
-                if button(
-                    ui,
-                    &theme,
-                    does,
-                    vec2(1.5 * width, 48.0),
-                    ButtonStyle::Other,
-                )
-                .clicked()
+                let size = vec2(1.5 * width, 48.0);
+                if let Some((does, deed)) = deed
+                    && button(ui, &theme, does, size, ButtonStyle::Other).clicked()
                 {
                     wish = Some(deed);
                 }
@@ -106,7 +102,9 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: StaffPage, ui: &mu
                         }
                     }
                     StaffPage::End => {
-                        ui.label(RichText::new(said.ends).size(21.0).color(theme.ink));
+                        if let Some(chosen) = confirm_end(ui, &theme, said) {
+                            wish = Some(chosen);
+                        }
                     }
                 }
             });
@@ -132,6 +130,24 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, shown: StaffPage, ui: &mu
         StaffAction::Export => stand.memory.export(),
         StaffAction::End => stand.is_ended = true,
     }
+}
+
+/// Asks whether the stand shall end; returns the answer.
+fn confirm_end(ui: &mut Ui, theme: &Theme, said: &StandWords) -> Option<StaffAction> {
+    ui.label(RichText::new(said.ends).size(21.0).color(theme.ink));
+    ui.add_space(2.0 * GAP);
+    let size = vec2(260.0, 52.0);
+    let mut answer = None;
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(2.0 * GAP, GAP);
+        if button(ui, theme, said.keep_open, size, ButtonStyle::Main).clicked() {
+            answer = Some(StaffAction::See(StaffPage::Settings));
+        }
+        if button(ui, theme, said.end_now, size, ButtonStyle::Other).clicked() {
+            answer = Some(StaffAction::End);
+        }
+    });
+    answer
 }
 
 /// Shows a name and its value.

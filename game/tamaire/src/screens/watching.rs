@@ -1,0 +1,72 @@
+//! Bar under a replay: position and speed.
+
+use super::buttons::pale;
+use super::widgets::track;
+use crate::game::{Game, SPEEDS};
+use app_shell::widgets::{ButtonStyle, fitted, plain_button};
+use egui::{Align, Layout, Rect, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use fuwafuwa::DEFAULT_TICK;
+
+/// Maximum width of the bar [points].
+const WIDE: f32 = 760.0;
+/// Height of the bar [points].
+const HIGH: f32 = 60.0;
+/// Distance of the bar from the edges of the window [points].
+const EDGE: f32 = 15.0;
+/// Gap between the parts of the bar [points].
+const GAP: f32 = 12.0;
+/// Size of the button of a speed [points].
+const SPEED: egui::Vec2 = vec2(58.0, 40.0);
+/// Width of the text that tells the position [points].
+const CLOCK: f32 = 112.0;
+
+/// Shows the bar while a replay is on the screen.
+pub(super) fn show(game: &mut Game, ui: &mut Ui) {
+    let Some([tick, length]) = game.bout.session.position() else {
+        return;
+    };
+    let (theme, screen) = (game.theme(), ui.max_rect());
+    let width = WIDE.min(screen.width() - 2.0 * EDGE);
+    let middle = pos2(screen.center().x, screen.bottom() - EDGE - 0.5 * HIGH);
+    let bar = Rect::from_center_size(middle, vec2(width, HIGH));
+    ui.painter().rect_filled(bar, 0.5 * HIGH, pale(&theme));
+    let inside = bar.shrink2(vec2(24.0, 0.0));
+    let layout = Layout::left_to_right(Align::Center);
+    let builder = UiBuilder::new().max_rect(inside).layout(layout);
+    ui.scope_builder(builder, |ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
+        draw_clock(ui, game, [tick, length]);
+        let speeds = SPEEDS.len() as f32 * (SPEED.x + GAP);
+        let wide = (ui.available_width() - speeds).max(60.0);
+        let all = length.max(1) as f32 * DEFAULT_TICK;
+        let here = tick as f32 * DEFAULT_TICK;
+        let name = game.words().position;
+        let (_, asked) = track(ui, &theme, name, here, [0.0, all], 1.0, wide);
+        if let Some(seconds) = asked {
+            // At the very end the replay would close.
+            let last = length.saturating_sub(1);
+            game.wind_to(((seconds / DEFAULT_TICK).round() as usize).min(last));
+        }
+        for (speed, text) in SPEEDS {
+            let is_chosen = game.bout.watch_speed == speed;
+            let response = plain_button(ui, &theme, text, SPEED, ButtonStyle::of(is_chosen));
+            let told = format!("{}: {text}", game.words().speed);
+            let role = Role::RadioButton;
+            response.widget_info(|| WidgetInfo::selected(role, true, is_chosen, &told));
+            if response.clicked() {
+                game.bout.watch_speed = speed;
+            }
+        }
+    });
+}
+
+/// Draws the position and the length of the replay.
+fn draw_clock(ui: &mut Ui, game: &Game, ticks: [usize; 2]) {
+    let theme = game.theme();
+    let [here, all] = ticks.map(|tick| tick as f32 * DEFAULT_TICK);
+    let text = format!("{here:.1} / {all:.1} s");
+    let (rect, _) = ui.allocate_exact_size(vec2(CLOCK, HIGH), Sense::hover());
+    let galley = fitted(ui.painter(), &text, 19.0, CLOCK, theme.ink);
+    let at = rect.left_center() - vec2(0.0, 0.5 * galley.size().y);
+    ui.painter().galley(at, galley, theme.ink);
+}
