@@ -157,7 +157,9 @@ fn round_is_reported_as_json() {
     assert_eq!(told["bot"], "idle");
     assert_eq!(told["won"], true);
     assert_eq!(told["route"], "squeeze");
-    assert_eq!(told["wishes"], serde_json::json!([true, false]));
+    // The clock starts with the first push. The bot never pushes, so it meets any limit of time.
+    assert_eq!(told["wishes"], serde_json::json!([true, true]));
+    assert_eq!(told["seconds"], 0.0);
     assert_eq!(told["pieces"], 1);
     assert_eq!(told["kept"], 1.0);
     let ticks = told["ticks"].as_u64().unwrap();
@@ -165,7 +167,6 @@ fn round_is_reported_as_json() {
         (60..66).contains(&ticks),
         "won after a second at rest: {ticks}"
     );
-    assert!((told["seconds"].as_f64().unwrap() - ticks as f64 / 60.0).abs() < 1e-3);
     assert_eq!(told["hash"].as_str().unwrap().len(), 16);
     let [p50, p99, worst] =
         ["p50_tick_ms", "p99_tick_ms", "worst_tick_ms"].map(|field| told[field].as_f64().unwrap());
@@ -192,7 +193,7 @@ fn bot_depends_only_on_seed() {
 #[test]
 fn lost_round_is_reported_without_error() {
     let folder = folder();
-    let line = "--headless --level far.toml --bot idle --seconds 1";
+    let line = "--headless --level far.toml --bot random --seconds 1";
     let output = tamaire(folder.path(), line);
     let told = text(&output.stdout);
     assert_eq!(output.status.code(), Some(0), "{output:?}");

@@ -48,8 +48,8 @@ pub struct Players {
     /// Whether each player's hand was picked up in this round: a pointer, finger or stick that sets positions
     /// has been at the hand. Before that, the hand only glides towards the position.
     is_picked_up: [bool; PLAYERS],
-    /// Position to which a hand that was not picked up yet glides [m].
-    aims: [Option<Vec3>; PLAYERS],
+    /// Position to which a hand that was not picked up yet glides.
+    aims: [Option<Aim>; PLAYERS],
     /// Goal that each player requests [m]. The hand and its target position may be far from this goal, for
     /// example behind an obstacle.
     goals: [Option<Vec3>; PLAYERS],
@@ -62,11 +62,20 @@ pub struct Players {
     rested: [f32; PLAYERS],
 }
 
+/// Position that a device sets.
+#[derive(Clone, Copy, Debug)]
+struct Aim {
+    /// Position [m].
+    position: Vec3,
+    /// Whether the player sees the position on the screen: that of a pointer or finger, not that of a stick.
+    is_seen: bool,
+}
+
 /// Requests of a player's devices in a tick.
 #[derive(Default)]
 struct Asked {
-    /// Requested position [m].
-    position: Option<Vec3>,
+    /// Requested position.
+    position: Option<Aim>,
     /// Requested direction: to the right, and up (in 3D: away from the camera). Length 1 = full speed.
     lean: Vec2,
     /// Requested speed of raising the hand, from -1 to 1 (full speed).
@@ -205,18 +214,23 @@ impl Players {
     /// Returns the next goal of a hand on its way to the position `aim` that a pointer, finger or stick sets.
     ///
     /// When a round begins, the pointer may lie anywhere, also on a body. The hand must not dash there. Until
-    /// the pointer has been at the hand, the hand glides slowly, and it goes around bodies or stops
-    /// before it touches one. `here`
-    /// is the target position of the hand, `wanted` its goal.
+    /// the pointer has been at the hand, the hand glides slowly, and it goes around bodies or stops before it
+    /// touches one. A player does not see the position of a stick, so a stick could not fetch a hand that has
+    /// stopped: the hand of a stick glides on and pushes gently. `here` is the target position of the hand,
+    /// `wanted` its goal.
     fn approach(
         &mut self,
         player: usize,
-        aim: Vec3,
+        aim: Aim,
         [here, wanted]: [Vec3; 2],
         manner: &InputMapping,
         hands: &Hands,
         seconds: f32,
     ) -> Vec3 {
+        let Aim {
+            position: aim,
+            is_seen,
+        } = aim;
         let (mut way, mut here) = (aim - here, here);
         if manner.turn.is_some() {
             // In 3D a pointer sets the position along the floor. The height is set separately.
@@ -231,6 +245,9 @@ impl Players {
         let step = way * (GLIDE * seconds / distance).min(1.0);
         if !step.is_finite() {
             return here;
+        }
+        if !is_seen {
+            return here + step;
         }
         let least = (hands.distance_to_bodies)(here).min(hands.radius + GAP);
         let is_free = |next: &Vec3| {
@@ -299,7 +316,10 @@ impl Players {
             if !manner.stick_sets_position && !pushes_back {
                 asked.lean += Vec2::from(stick);
             } else if moved || self.used[player] == Some(InputSource::Stick(device.id)) {
-                asked.position = Some(manner.position_of(stick, height));
+                asked.position = Some(Aim {
+                    position: manner.position_of(stick, height),
+                    is_seen: false,
+                });
             }
             let held = held_on(device, bindings);
             let means = |action| held.contains(&action);
@@ -324,7 +344,11 @@ impl Players {
         }
         let wheel = rises * devices.lift;
         if holds(InputSource::Pointer) && (devices.pointer.is_some() || wheel != 0.0) {
-            asked.position = devices.pointer.or(asked.position);
+            let seen = devices.pointer.map(|position| Aim {
+                position,
+                is_seen: true,
+            });
+            asked.position = seen.or(asked.position);
             asked.wheel = wheel;
             self.used[player] = Some(InputSource::Pointer);
         }
