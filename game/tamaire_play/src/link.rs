@@ -79,8 +79,8 @@ impl Link {
     /// [`LinkError`] if the text is no link, is damaged, or has content that cannot be played.
     pub fn read(text: &str) -> Result<Self, LinkError> {
         let mut problem = LinkError::Other;
-        for fragment in pasted::fragments(text) {
-            match unsealed(&fragment) {
+        for fragment in pasted::candidates(text).fragments() {
+            match unsealed(fragment) {
                 Ok((kind, bytes)) => return Self::of(kind, &bytes),
                 Err(error) => problem = error,
             }
