@@ -75,7 +75,7 @@ struct ScanInfo {
     placed_by: &'static str,
     lowest: f32,
     highest: f32,
-    /// What was replaced or ignored, as sentences.
+    /// Notes on replaced or ignored parts of the file.
     notes: Vec<String>,
 }
 
@@ -90,7 +90,10 @@ struct Share {
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let out = arguments.out.as_deref();
     if let Some(out) = out {
-        is_scene(out)?;
+        if is_scene(out)? && out.file_name().is_some_and(|name| name.to_str().is_none()) {
+            // A scene names its model.
+            anyhow::bail!("{}: expected a name in UTF-8 for a scene", out.display());
+        }
         check_folder(out)?;
     }
     let progress = Progress::new();
@@ -219,17 +222,14 @@ fn is_scene(out: &Path) -> Result<bool> {
 
 fn write_files(out: &Path, organ: &Organ, summary: &Summary) -> Result<()> {
     let model = out.with_extension("vox");
-    let name = model.file_name().unwrap_or_default();
-    let Some(name) = name.to_str() else {
-        anyhow::bail!("{}: expected a name in UTF-8", out.display());
-    };
+    let name = model.file_name().unwrap_or_default().to_string_lossy();
     let colours: Vec<_> = COLOURS.into_iter().cycle().take(255).collect();
-    let made = Model::of(name, &organ.grid, &colours)?;
+    let made = Model::of(&name, &organ.grid, &colours)?;
     let bytes = made.bytes();
     if !is_scene(out)? {
         return write(&model, &bytes);
     }
-    let scene = scene(name, made.size(), summary)?;
+    let scene = scene(&name, made.size(), summary)?;
     output::write_together(&[(&model, &bytes), (out, scene.as_bytes())])
         .map_err(|(path, error)| anyhow::anyhow!("{}: {error}", path.display()))?;
     for path in [&model, out] {
