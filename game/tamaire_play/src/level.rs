@@ -154,7 +154,7 @@ impl Level {
     /// [`LevelError`] with the problem and its line.
     pub fn read(id: &str, bytes: &[u8], fetch: Fetch) -> Result<Self, LevelError> {
         let found = FileType::of(bytes);
-        if let Some(frame) = frame::of(found) {
+        if let Some(frame) = frame::level_around(found) {
             return Self::framed(frame, id, bytes).map_err(|error| attribute_to_file(id, error));
         }
         if !found.is_plain_text() || found == FileType::Empty {
@@ -180,7 +180,7 @@ impl Level {
 
     /// Returns whether the content of a file is a picture or a model, which becomes the body of a level.
     pub fn is_body_in(bytes: &[u8]) -> bool {
-        frame::of(FileType::of(bytes)).is_some()
+        frame::level_around(FileType::of(bytes)).is_some()
     }
 
     /// Reads a level that was stored with [`Level::text_to_keep`].
