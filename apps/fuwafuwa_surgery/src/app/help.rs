@@ -2,7 +2,6 @@
 
 use super::section::Shown;
 use crate::case::Case;
-use crate::phantom;
 use app_shell::Theme;
 use app_shell::widgets::{ButtonStyle, button};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2};
@@ -125,20 +124,10 @@ pub fn legend(ui: &Ui, theme: &Theme, view: Rect, case: &Case, shown: Shown, col
 fn materials(case: &Case, colours: &Palette) -> Vec<(Option<Colour>, String)> {
     let count = case.tissues.len();
     let last = count.min(MOST_ROWS) as u8;
-    let named = (1..=last).map(|number| (Some(colours.material(number)), name_of(case, number)));
+    let named =
+        (1..=last).map(|number| (Some(colours.material(number)), case.material_name(number)));
     let more = (count > MOST_ROWS).then(|| (None, format!("and {} more", count - MOST_ROWS)));
     named.chain(more).collect()
-}
-
-/// Returns the name of a material.
-fn name_of(case: &Case, number: u8) -> String {
-    let names: &[&str] = if case.name == phantom::NAME {
-        &phantom::MATERIALS
-    } else {
-        &[]
-    };
-    let name = names.get(usize::from(number) - 1);
-    name.map_or_else(|| format!("material {number}"), |name| (*name).to_string())
 }
 
 fn screen(colour: Colour) -> Color32 {
@@ -149,9 +138,10 @@ fn screen(colour: Colour) -> Color32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::phantom;
 
     #[test]
-    fn legend_names_materials_of_the_phantom_and_numbers_others() {
+    fn legend_names_materials_and_numbers_those_without_a_name() {
         let colours = crate::app::pictures::palette();
         let mut case = phantom::case(32).unwrap();
         let names = |case: &Case| -> Vec<String> {
@@ -160,7 +150,7 @@ mod tests {
                 .collect()
         };
         assert_eq!(names(&case), ["flesh", "core", "growth", "vessels"]);
-        case.name = "brain".into();
+        case.names.clear();
         case.tissues.truncate(2);
         assert_eq!(names(&case), ["material 1", "material 2"]);
         case.tissues = crate::case::tissues(255);
