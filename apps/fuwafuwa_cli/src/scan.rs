@@ -75,7 +75,7 @@ struct ScanInfo {
     placed_by: &'static str,
     lowest: f32,
     highest: f32,
-    /// What was replaced or ignored, as sentences.
+    /// Notes on replaced or ignored parts of the file.
     notes: Vec<String>,
 }
 
@@ -90,7 +90,10 @@ struct Share {
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let out = arguments.out.as_deref();
     if let Some(out) = out {
-        is_scene(out)?;
+        if is_scene(out)? && out.file_name().is_some_and(|name| name.to_str().is_none()) {
+            // A scene names its model.
+            anyhow::bail!("{}: expected a name in UTF-8 for a scene", out.display());
+        }
         check_folder(out)?;
     }
     let progress = Progress::new();
@@ -219,17 +222,14 @@ fn is_scene(out: &Path) -> Result<bool> {
 
 fn write_files(out: &Path, organ: &Organ, summary: &Summary) -> Result<()> {
     let model = out.with_extension("vox");
-    let name = model.file_name().unwrap_or_default();
-    let Some(name) = name.to_str() else {
-        anyhow::bail!("{}: expected a name in UTF-8", out.display());
-    };
+    let name = model.file_name().unwrap_or_default().to_string_lossy();
     let colours: Vec<_> = COLOURS.into_iter().cycle().take(255).collect();
-    let made = Model::of(name, &organ.grid, &colours)?;
+    let made = Model::of(&name, &organ.grid, &colours)?;
     let bytes = made.bytes();
     if !is_scene(out)? {
         return write(&model, &bytes);
     }
-    let scene = scene(name, made.size(), summary)?;
+    let scene = scene(&name, made.size(), summary)?;
     output::write_together(&[(&model, &bytes), (out, scene.as_bytes())])
         .map_err(|(path, error)| anyhow::anyhow!("{}: {error}", path.display()))?;
     for path in [&model, out] {
@@ -317,33 +317,15 @@ fn scene(model: &str, size: [usize; 3], summary: &Summary) -> Result<String> {
 }
 
 #[cfg(test)]
+#[path = "../tests/sample/mod.rs"]
+mod sample;
+
+#[cfg(test)]
 mod tests {
+    use super::sample::cube;
     use super::*;
     use fuwafuwa::Dim3;
     use fuwafuwa_scenes::disk::open_scene;
-
-    /// NIfTI-1 file with a cube of 9³ voxels of 2 mm, surrounded by empty voxels.
-    fn cube() -> Vec<u8> {
-        let mut bytes = vec![0; 352 + 13 * 13 * 13];
-        bytes[..4].copy_from_slice(&348_i32.to_le_bytes());
-        for (index, number) in [3, 13, 13, 13, 1, 1, 1, 1].into_iter().enumerate() {
-            bytes[40 + 2 * index..][..2].copy_from_slice(&i16::to_le_bytes(number));
-        }
-        bytes[70] = 2;
-        bytes[72] = 8;
-        bytes[108..112].copy_from_slice(&352_f32.to_le_bytes());
-        for axis in 0..3 {
-            bytes[80 + 4 * axis..][..4].copy_from_slice(&2_f32.to_le_bytes());
-        }
-        bytes[344..348].copy_from_slice(b"n+1\0");
-        for at in 0..13 * 13 * 13 {
-            let is_inside = [at % 13, at / 13 % 13, at / 169]
-                .iter()
-                .all(|k| (2..11).contains(k));
-            bytes[352 + at] = u8::from(is_inside);
-        }
-        bytes
-    }
 
     fn scan_to(file: PathBuf, out: PathBuf) -> Result<ExitCode> {
         run(&Arguments {

@@ -3,6 +3,7 @@
 
 #[path = "../../fuwafuwa_output/tests/programs/mod.rs"]
 mod programs;
+mod sample;
 
 use programs::{check_files, check_output};
 use std::fs;
@@ -11,30 +12,9 @@ use std::process::Command;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_fuwafuwa");
 
-/// Writes `cube.nii`, a NIfTI-1 file with a cube of 9³ voxels of 2 mm, surrounded by empty voxels.
+/// Writes `cube.nii`, a scan of a cube.
 fn write_scan(folder: &Path) {
-    let mut bytes = vec![0; 352 + 13 * 13 * 13];
-    let mut put = |at: usize, bytes_there: &[u8]| {
-        bytes[at..at + bytes_there.len()].copy_from_slice(bytes_there);
-    };
-    put(0, &348_i32.to_le_bytes());
-    for (index, number) in [3, 13, 13, 13, 1, 1, 1, 1_i16].into_iter().enumerate() {
-        put(40 + 2 * index, &number.to_le_bytes());
-    }
-    put(70, &2_i16.to_le_bytes());
-    put(72, &8_i16.to_le_bytes());
-    for axis in 0..3 {
-        put(80 + 4 * axis, &2_f32.to_le_bytes());
-    }
-    put(108, &352_f32.to_le_bytes());
-    put(344, b"n+1\0");
-    for at in 0..13 * 13 * 13 {
-        let is_inside = [at % 13, at / 13 % 13, at / 169]
-            .iter()
-            .all(|k| (2..11).contains(k));
-        bytes[352 + at] = u8::from(is_inside);
-    }
-    fs::write(folder.join("cube.nii"), bytes).unwrap();
+    fs::write(folder.join("cube.nii"), sample::cube()).unwrap();
 }
 
 #[test]

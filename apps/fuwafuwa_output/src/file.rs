@@ -8,6 +8,8 @@ use tempfile::{NamedTempFile, PersistError};
 /// Maximum number of characters of a file name that a temporary name begins with. The temporary name must fit
 /// into the 255 bytes of most file systems.
 const MOST_CHARS: usize = 50;
+/// Maximum number of symbolic links that are followed, as on Linux.
+const MAX_LINKS: usize = 40;
 
 /// Writes a file as a whole. If writing fails, an existing file is unchanged.
 ///
@@ -64,7 +66,7 @@ pub fn write_together(files: &[(&Path, &[u8])]) -> Result<(), (PathBuf, io::Erro
 /// dropping without it deletes the temporary file.
 ///
 /// The temporary name is the name with six random characters and `.part` behind it. A pipe or a device is
-/// written directly.
+/// written directly; if the reader of a pipe has ended, the rest is dropped without an error.
 #[derive(Debug)]
 pub struct Draft {
     path: PathBuf,
@@ -80,13 +82,18 @@ enum Target {
 }
 
 impl Draft {
-    /// Starts a file. A symbolic link at `path` is followed, so that the link stays a link.
+    /// Starts a file. A symbolic link at `path` is followed and stays a link; if its target does not exist, the
+    /// file is made there. A path in `/dev` or `/proc` is written directly, except in `/dev/shm`.
     ///
     /// # Errors
     /// [`ErrorKind::IsADirectory`] if `path` is a folder; the error of the system if an existing file is
     /// write-protected, or if no file can be created in the folder.
     pub fn begin(path: &Path) -> io::Result<Self> {
-        let path = fs::canonicalize(path).unwrap_or_else(|_| path.into());
+        let path = resolved(path)?;
+        if is_of_system(&path) {
+            let device = Target::Device(open_of_system(&path)?);
+            return Ok(Self::new(path, device, None));
+        }
         let (target, permissions) = match fs::metadata(&path) {
             Ok(found) if found.is_dir() => {
                 let reason = "a folder has this name";
@@ -107,12 +114,29 @@ impl Draft {
             }
             Err(error) => return Err(error),
         };
+        Ok(Self::new(path, target, permissions))
+    }
+
+    /// Starts a file that does not exist yet, to be completed by [`Draft::keep_new`].
+    ///
+    /// # Errors
+    /// [`ErrorKind::AlreadyExists`] if anything has this name, also a folder or a link without a target; the
+    /// error of the system if no file can be created in the folder.
+    pub fn begin_new(path: &Path) -> io::Result<Self> {
+        if fs::symlink_metadata(path).is_ok() {
+            return Err(ErrorKind::AlreadyExists.into());
+        }
+        let target = Target::Temporary(temporary(path)?);
+        Ok(Self::new(path.into(), target, None))
+    }
+
+    fn new(path: PathBuf, target: Target, permissions: Option<Permissions>) -> Self {
         let target = BufWriter::new(target);
-        Ok(Self {
+        Self {
             path,
             target,
             permissions,
-        })
+        }
     }
 
     /// Writes everything to the disk, still under the temporary name.
@@ -176,7 +200,11 @@ impl Write for Target {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
             Self::Temporary(file) => file.write(bytes),
-            Self::Device(file) => file.write(bytes),
+            Self::Device(file) => match file.write(bytes) {
+                // The reader of the pipe, for example `head`, has read enough.
+                Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(bytes.len()),
+                written => written,
+            },
         }
     }
 
@@ -201,6 +229,45 @@ fn temporary(path: &Path) -> io::Result<NamedTempFile> {
         builder.permissions(Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder_of(path))
+}
+
+/// Follows symbolic links to the path of the file itself, which need not exist. Links of the system, such as
+/// `/dev/stdout`, are not followed.
+fn resolved(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_path_buf();
+    for _ in 0..MAX_LINKS {
+        let is_link = fs::symlink_metadata(&path).is_ok_and(|found| found.is_symlink());
+        if !is_link || is_of_system(&path) {
+            return Ok(path);
+        }
+        path = folder_of(&path).join(fs::read_link(&path)?);
+    }
+    let reason = format!("more than {MAX_LINKS} symbolic links follow each other");
+    Err(io::Error::other(reason))
+}
+
+/// Returns whether a path belongs to the devices and processes of the system. `/dev/shm` holds ordinary files.
+fn is_of_system(path: &Path) -> bool {
+    let is_device = path.starts_with("/dev") && !path.starts_with("/dev/shm");
+    is_device || path.starts_with("/proc")
+}
+
+/// Opens a path of the system for writing. Standard output and standard error are not opened anew: opening a
+/// pipe waits for a reader, and opening a file begins at its start.
+fn open_of_system(path: &Path) -> io::Result<File> {
+    #[cfg(unix)]
+    {
+        use std::os::fd::AsFd;
+        let stream = match path.to_str() {
+            Some("/dev/stdout") => Some(io::stdout().as_fd().try_clone_to_owned()?),
+            Some("/dev/stderr") => Some(io::stderr().as_fd().try_clone_to_owned()?),
+            _ => None,
+        };
+        if let Some(stream) = stream {
+            return Ok(File::from(stream));
+        }
+    }
+    File::options().append(true).open(path)
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -289,6 +356,58 @@ mod tests {
         assert_eq!(mode(&file), 0o640);
         write(&fresh, b"new").unwrap();
         assert_eq!(mode(&fresh), usual);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_without_a_target_are_kept_and_get_one() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        symlink("second", path("first")).unwrap();
+        symlink("made", path("second")).unwrap();
+        write(&path("first"), b"new").unwrap();
+        assert_eq!(names(folder.path()), ["first", "made", "second"]);
+        assert!(fs::symlink_metadata(path("first")).unwrap().is_symlink());
+        assert!(fs::symlink_metadata(path("second")).unwrap().is_symlink());
+        assert!(fs::symlink_metadata(path("made")).unwrap().is_file());
+        assert_eq!(fs::read(path("made")).unwrap(), b"new");
+        symlink("circle", path("circle")).unwrap();
+        let error = write(&path("circle"), b"new").unwrap_err();
+        assert!(error.to_string().contains("symbolic links"), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn begin_new_refuses_whatever_has_the_name() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("file"), "old").unwrap();
+        fs::set_permissions(path("file"), Permissions::from_mode(0o444)).unwrap();
+        fs::create_dir(path("folder")).unwrap();
+        symlink("nowhere", path("link")).unwrap();
+        for name in ["file", "folder", "link"] {
+            let error = Draft::begin_new(&path(name)).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::AlreadyExists, "{name}");
+        }
+        let mut draft = Draft::begin_new(&path("new")).unwrap();
+        draft.write_all(b"new").unwrap();
+        draft.keep_new().unwrap();
+        assert_eq!(fs::read(path("new")).unwrap(), b"new");
+        assert_eq!(names(folder.path()), ["file", "folder", "link", "new"]);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn pipe_whose_reader_has_ended_gives_no_error() {
+        use std::os::fd::AsRawFd;
+        let (reader, writer) = io::pipe().unwrap();
+        let path = format!("/proc/self/fd/{}", writer.as_raw_fd());
+        let mut draft = Draft::begin(Path::new(&path)).unwrap();
+        drop(reader);
+        draft.write_all(b"text").unwrap();
+        draft.keep().unwrap();
     }
 
     #[cfg(target_os = "linux")]

@@ -1,7 +1,8 @@
 //! Numbers that summarize others.
 
-/// Returns the value that a share of sorted numbers does not exceed. If the share falls between two numbers,
-/// returns their mean, so that a median of two numbers is their mean. `None` without numbers.
+/// Returns a quantile of numbers in ascending order: the smallest number that at least `share` (0 to 1) of the
+/// numbers do not exceed. If exactly this share does not exceed it, returns the mean of the number and the next
+/// one, so that the median of two numbers is their mean. `None` without numbers.
 ///
 /// ```
 /// assert_eq!(output::quantile(&[1.0, 4.0], 0.5), Some(2.5));
@@ -25,7 +26,7 @@ mod tests {
     use super::quantile;
 
     #[test]
-    fn quantile_is_exceeded_by_the_rest_only() {
+    fn quantile_has_known_values() {
         let tens: Vec<f64> = (1..=10).map(f64::from).collect();
         for (share, expected) in [
             (0.0, 1.0),

@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use std::fmt::Display;
-use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::io::{self, ErrorKind, Write};
 
 /// Exit status for output that cannot be written.
 const NOT_WRITTEN: i32 = 2;
@@ -18,7 +18,11 @@ pub fn print(text: &str) -> io::Result<()> {
 }
 
 fn print_to(out: &mut impl Write, text: &str) -> io::Result<()> {
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    checked(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// Turns the error of a closed pipe into success, and adds the name of the stream to other errors.
+fn checked(written: io::Result<()>) -> io::Result<()> {
     match written {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         Err(error) => Err(io::Error::new(
@@ -35,7 +39,7 @@ pub fn warn(line: impl Display) {
 }
 
 /// Parses the command line of the process. Prints the requested help or version, or the mistake in the
-/// command line, and ends the process.
+/// command line, and ends the process. A closed pipe is no error, as for [`print`](print()).
 ///
 /// The exit status is 0 for help and version, and 2 for a mistake or if the output cannot be written.
 pub fn parse<P: Parser>() -> P {
@@ -43,12 +47,9 @@ pub fn parse<P: Parser>() -> P {
         if error.use_stderr() {
             error.exit();
         }
-        let text = error.render();
-        let text = match io::stdout().is_terminal() {
-            true => text.ansi().to_string(),
-            false => text.to_string(),
-        };
-        std::process::exit(match print(&text) {
+        // Colours follow clap's rules, for example `NO_COLOR`.
+        let printed = error.print().and_then(|()| io::stdout().flush());
+        std::process::exit(match checked(printed) {
             Ok(()) => 0,
             Err(error) => {
                 warn(format_args!("{}: {error}", P::command().get_name()));

@@ -19,8 +19,8 @@ use app_shell::{Clock, GpuWatch, NoGpu, SpaceStage, Theme, View, style};
 use bar::BarAction;
 use devices::{DeviceAction, Devices};
 use egui::{
-    Align2, CentralPanel, Color32, FontId, Frame, Key, Panel, PointerButton, Rect, Ui, Vec2, pos2,
-    vec2,
+    Align2, CentralPanel, Color32, FontId, Frame, Key, Panel, PointerButton, Pos2, Rect, Ui, Vec2,
+    pos2, vec2,
 };
 use force_feedback::Stop;
 use fuwafuwa::Vec3;
@@ -67,6 +67,8 @@ pub struct App {
     before: f64,
     /// Whether the help with the controls is open.
     has_help: bool,
+    /// Parts of the view where the mouse does not move the tool: the button of the help, and the open help.
+    covered: Vec<Rect>,
     /// Message on the screen, and the time at which the message disappears [s].
     said: Option<(String, f64)>,
     gpu: GpuWatch,
@@ -96,6 +98,7 @@ impl App {
             clock: Clock::of_machine(),
             before: 0.0,
             has_help: false,
+            covered: Vec::new(),
             said: None,
             gpu: GpuWatch::of(state, "fuwafuwa_surgery"),
             setup,
@@ -231,12 +234,12 @@ impl App {
         let (room, turn) = (session.procedure().table().room, session.camera.azimuth());
         let mut wishes = HandInput::default();
         let (presses, look) = self.devices.hear(&mut wishes, room, turn, seconds);
+        let keys_look = match is_typing {
+            true => Vec2::ZERO,
+            false => hear_keys(ctx, &mut wishes),
+        };
         if let Some(view) = &self.view {
-            hear_mouse(ctx, view, session, &mut wishes, is_typing);
-        }
-        let mut keys_look = Vec2::ZERO;
-        if !is_typing {
-            keys_look = hear_keys(ctx, &mut wishes);
+            hear_mouse(ctx, view, &self.covered, session, &mut wishes, keys_look);
         }
         let look = LOOK * seconds * (look + keys_look);
         session.camera.orbit(look.x, look.y);
@@ -372,7 +375,7 @@ impl App {
                 let case = session.procedure().case();
                 help::legend(ui, &self.theme, rect, case, slices.shown, &self.colours);
             }
-            help::show(ui, &self.theme, rect, &mut self.has_help);
+            self.covered = help::show(ui, &self.theme, rect, &mut self.has_help);
             self.show_words(ui, rect);
         });
         if let Some(ask) = ask {
@@ -453,18 +456,21 @@ pub fn wanted(files: Vec<PathBuf>, setup: &Setup) -> LoadRequest {
 /// changes the height. The left button grips, and the right button turns the camera.
 ///
 /// From a movement of the mouse on, until keys or sticks move the hand or the camera turns, the tip of the tool stays
-/// under the pointer at each height.
+/// under the pointer at each height. `wishes` are those of keys and sticks, and `keys_look` is the turning of the
+/// camera by keys. The mouse is ignored in the `covered` parts of the view.
 fn hear_mouse(
     ctx: &egui::Context,
     view: &View,
+    covered: &[Rect],
     session: &mut Session,
     wishes: &mut HandInput,
-    is_typing: bool,
+    keys_look: Vec2,
 ) {
-    let (at, delta, grips, turns, wheel, twice) = ctx.input(|input| {
+    let (at, origin, delta, grips, turns, wheel, twice) = ctx.input(|input| {
         let pointer = &input.pointer;
         (
             pointer.latest_pos(),
+            pointer.press_origin(),
             pointer.delta(),
             pointer.button_down(PointerButton::Primary),
             pointer.button_down(PointerButton::Secondary),
@@ -475,6 +481,9 @@ fn hear_mouse(
     let Some(at) = at.filter(|at| view.rect.contains(*at)) else {
         return;
     };
+    if is_covered(covered, at, origin) {
+        return;
+    }
     wishes.wheel += WHEEL * wheel;
     wishes.grips |= grips;
     if twice {
@@ -484,12 +493,7 @@ fn hear_mouse(
         session.camera.orbit(-DRAG * delta.x, DRAG * delta.y);
     }
     let is_led = wishes.place.is_some() || wishes.lean != Vec2::ZERO;
-    let mut keys = HandInput::default();
-    let looks = match is_typing {
-        true => Vec2::ZERO,
-        false => hear_keys(ctx, &mut keys),
-    };
-    let is_left = is_led || keys.lean != Vec2::ZERO || looks != Vec2::ZERO || turns || twice;
+    let is_left = is_led || keys_look != Vec2::ZERO || turns || twice;
     session.follows_pointer = match is_left {
         true => false,
         false => session.follows_pointer || delta != Vec2::ZERO,
@@ -499,6 +503,13 @@ fn hear_mouse(
         let height = (session.hand.goal.y + wishes.wheel).clamp(low.y, high.y);
         wishes.place = Some(view.to_world(at, height));
     }
+}
+
+/// Returns whether the mouse belongs to a covered part of the view: while a button is held, by the position at which
+/// it was pressed, otherwise by its position.
+fn is_covered(covered: &[Rect], at: Pos2, origin: Option<Pos2>) -> bool {
+    let at = origin.unwrap_or(at);
+    covered.iter().any(|rect| rect.contains(at))
 }
 
 /// Handles held keys and returns the camera's turning speed as a fraction of [`LOOK`].
@@ -519,4 +530,20 @@ fn hear_keys(ctx: &egui::Context, wishes: &mut HandInput) -> Vec2 {
         wishes.grips |= input.key_down(Key::Space);
         vec2(along(&[Key::CloseBracket], &[Key::OpenBracket]), 0.0)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn click_on_the_help_does_not_reach_the_tool() {
+        let button = Rect::from_min_size(pos2(12.0, 12.0), vec2(110.0, 36.0));
+        let (inside, outside) = (pos2(20.0, 20.0), pos2(300.0, 300.0));
+        assert!(is_covered(&[button], inside, None));
+        assert!(is_covered(&[button], outside, Some(inside)));
+        assert!(!is_covered(&[button], outside, None));
+        // A grip goes on while the tool is moved below the button.
+        assert!(!is_covered(&[button], inside, Some(outside)));
+    }
 }

@@ -32,6 +32,8 @@ pub struct Case {
     pub grid: VoxelGrid<Dim3>,
     /// Materials of the voxels, starting at number 1.
     pub tissues: Vec<Material>,
+    /// Names of the materials, starting at number 1. Materials without a name are shown by their number.
+    pub names: Vec<String>,
     /// Position of the grid's low corner in the patient, RAS+ [mm].
     pub corner: [f64; 3],
 }
@@ -77,6 +79,7 @@ impl Case {
         Self {
             name: name.chars().take(MOST_LETTERS).collect(),
             tissues: tissues(usize::from(most.unwrap_or(1))),
+            names: Vec::new(),
             grid: organ.grid.clone(),
             corner,
         }
@@ -100,6 +103,15 @@ impl Case {
         if self.tissues.len() > MOST_MATERIALS {
             let expected = "at most 255 materials";
             return Err(field("tissues", expected, self.tissues.len().to_string()));
+        }
+        if self.names.len() > MOST_MATERIALS {
+            let expected = "names of at most 255 materials";
+            return Err(field("names", expected, self.names.len().to_string()));
+        }
+        let letters = self.names.iter().map(|name| name.chars().count()).max();
+        if let Some(letters) = letters.filter(|letters| *letters > MOST_LETTERS) {
+            let expected = "at most 200 letters";
+            return Err(field("names", expected, letters.to_string()));
         }
         if !self.corner.iter().all(|k| k.abs() <= 1e7) {
             let expected = "a point within 10 km of the patient's origin";
@@ -196,6 +208,15 @@ impl Case {
         let row = row?;
         let row = SoftBody::new(row, &self.tissues)?;
         Ok(row.longest_substep())
+    }
+
+    /// Returns the name of a material by its number, starting at 1.
+    pub fn material_name(&self, number: u8) -> String {
+        let name = usize::from(number)
+            .checked_sub(1)
+            .and_then(|at| self.names.get(at));
+        name.cloned()
+            .unwrap_or_else(|| format!("material {number}"))
     }
 
     /// Returns the volume of a voxel [ml].

@@ -30,7 +30,7 @@ pub struct Sample {
     pub grips: bool,
 }
 
-/// Returns the strongest force on the tool that lasted [N]: the greatest median of three successive ticks (50 ms).
+/// Returns the largest force on the tool that two of three successive ticks reach [N].
 /// A force that acts for a single tick does not count, because such a spike is an artefact of contacts that begin
 /// and end with whole voxels. 0 for fewer than three samples.
 pub fn strongest_force(samples: &[Sample]) -> f32 {

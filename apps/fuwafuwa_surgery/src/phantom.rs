@@ -99,7 +99,8 @@ pub fn case(resolution: usize) -> Result<Case, CaseError> {
     Ok(Case {
         name: NAME.into(),
         grid: grid?,
-        tissues: tissues(4),
+        tissues: tissues(MATERIALS.len()),
+        names: MATERIALS.map(String::from).into(),
         corner,
     })
 }

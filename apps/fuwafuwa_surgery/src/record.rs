@@ -21,7 +21,7 @@ use std::io::{Read, Write};
 use std::sync::Arc;
 
 /// Format version. It is increased if older recordings would be misread or would replay differently.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 /// Maximum size of a recording [bytes].
 pub const MOST_BYTES: usize = 1 << 26;
 /// Maximum size of the uncompressed contents [bytes]: the voxels of the finest organ and an hour of inputs.
@@ -92,6 +92,7 @@ struct Written {
     voxel: f32,
     materials: Vec<u8>,
     tissues: Vec<Material>,
+    names: Vec<String>,
     corner: [f64; 3],
     inputs: Vec<Input>,
     hashes: Vec<u64>,
@@ -135,6 +136,7 @@ impl Recording {
             voxel: grid.voxel_size(),
             materials: grid.voxels().map(|at| grid.material(at)).collect(),
             tissues: self.case.tissues.clone(),
+            names: self.case.names.clone(),
             corner: self.case.corner,
             inputs: self.inputs.clone(),
             hashes: self.hashes.clone(),
@@ -211,6 +213,7 @@ impl Written {
             name: self.name,
             grid: grid.map_err(CaseError::Engine)?,
             tissues: self.tissues,
+            names: self.names,
             corner: self.corner,
         };
         case.check()?;

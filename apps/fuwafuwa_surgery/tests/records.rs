@@ -77,6 +77,11 @@ fn invalid_values_are_rejected_before_the_replay() {
         name.contains("name: expected at most 200 letters, found 300"),
         "{name}"
     );
+    let names = bad(|one| Arc::make_mut(&mut one.case).names[3] = "z".repeat(201));
+    assert!(
+        names.contains("names: expected at most 200 letters, found 201"),
+        "{names}"
+    );
     let corner = bad(|one| Arc::make_mut(&mut one.case).corner[1] = f64::NAN);
     assert!(corner.contains("corner"), "{corner}");
     let material = bad(|one| Arc::make_mut(&mut one.case).tissues[0].density = -1.0);

@@ -298,7 +298,7 @@ impl Day {
 /// Returns the median and clears the numbers.
 fn middle(numbers: &mut Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);
-    let middle = numbers[numbers.len() / 2];
+    let middle = output::quantile(numbers, 0.5).expect("every hour has numbers");
     numbers.clear();
     middle
 }

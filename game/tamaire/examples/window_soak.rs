@@ -111,7 +111,7 @@ impl Figure {
 /// Returns the median; NaN without values.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+    output::quantile(&values, 0.5).unwrap_or(f64::NAN)
 }
 
 /// GPU cost of egui in the last frame.

@@ -178,7 +178,7 @@ const CATCH_UP: usize = 4;
 /// Lets a ghost play until its clock shows `clock` ticks, at most [`CATCH_UP`] ticks at a time. As long as the
 /// player has not begun, the ghost waits before its first push.
 fn race(ghost: &mut Playback, clock: u64) -> Result<(), ReplayError> {
-    if clock == 0 && !ghost.is_before_first_push() {
+    if clock == 0 && !ghost.starts_clock_next() {
         return ghost.step();
     }
     for _ in 0..CATCH_UP {

@@ -76,8 +76,12 @@ impl Logbook {
     /// Opens a logbook for reading: the file that a stand is writing, or a copy of it together with its
     /// `-wal` file. Nothing is written beside the file, which may be on a read-only medium.
     ///
+    /// If no program has the file open, a temporary copy is read; rows written later are not in it. The copy
+    /// is deleted when the logbook is dropped.
+    ///
     /// # Errors
-    /// [`Error::Newer`], [`Error::Damaged`] and [`Error::Unusable`]. The file is neither changed nor renamed.
+    /// [`Error::Newer`], [`Error::Damaged`] and [`Error::Unusable`]; [`Error::Locked`] if a program wrote the file
+    /// whenever it was copied. The file is neither changed nor renamed.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let (connection, copy) = file::read(path)?;
         let mut book = Self::from_connection(path, connection);

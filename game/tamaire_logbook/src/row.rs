@@ -33,7 +33,8 @@ pub struct Round {
     pub number: u32,
     /// Time at which the round began.
     pub began: Moment,
-    /// Playing time without pauses [s].
+    /// Playing time without pauses, from the beginning of the round [s]. The clock of the game shows less: it
+    /// starts with the first push.
     pub seconds: f32,
     /// Name of the level.
     pub level: String,

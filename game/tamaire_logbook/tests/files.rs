@@ -361,3 +361,41 @@ fn read_creates_and_removes_no_file() {
     let error = Logbook::read(folder.path()).unwrap_err().to_string();
     assert!(error.contains("found a folder"), "{error}");
 }
+
+#[test]
+fn read_ignores_a_lone_shared_memory_and_creates_no_log() {
+    let (_folder, path) = place();
+    fill(&path);
+    fs::write(beside(&path, "-shm"), "left over").unwrap();
+    let expected = ["logbook.sqlite", "logbook.sqlite-shm"];
+    let book = Logbook::read(&path).unwrap();
+    assert_eq!(all(&book).unwrap().rounds.len(), 90);
+    assert_eq!(names(path.parent().unwrap()), expected);
+    drop(book);
+    assert_eq!(names(path.parent().unwrap()), expected);
+    assert_eq!(fs::read(beside(&path, "-shm")).unwrap(), b"left over");
+}
+
+#[test]
+fn read_of_an_idle_logbook_is_undisturbed_by_later_writes() {
+    let (_folder, path) = place();
+    fill(&path);
+    let book = Logbook::read(&path).unwrap();
+    let (mut rounds, mut writer) = (0, None);
+    book.rounds(.., |_| {
+        // Begins to write after the first row, when the rest of the file has not been read.
+        let writer = writer.get_or_insert_with(|| open(&path));
+        writer.write_all(&entries(MORNING))?;
+        rounds += 1;
+        Ok::<(), Error>(())
+    })
+    .unwrap();
+    assert_eq!(rounds, 90);
+    // Closing copies the log into the file. The open copy must not change.
+    drop(writer);
+    assert_eq!(all(&book).unwrap().rounds.len(), 90);
+    drop(book);
+    assert_eq!(names(path.parent().unwrap()), ["logbook.sqlite"]);
+    let later = Logbook::read(&path).unwrap();
+    assert_eq!(all(&later).unwrap().rounds.len(), 90 + 90 * 3);
+}

@@ -154,7 +154,7 @@ impl Level {
     /// [`LevelError`] with the problem and its line.
     pub fn read(id: &str, bytes: &[u8], fetch: Fetch) -> Result<Self, LevelError> {
         let found = FileType::of(bytes);
-        if let Some(frame) = frame::of(found) {
+        if let Some(frame) = frame::level_around(found) {
             return Self::framed(frame, id, bytes).map_err(|error| attribute_to_file(id, error));
         }
         if !found.is_plain_text() || found == FileType::Empty {
@@ -180,7 +180,7 @@ impl Level {
 
     /// Returns whether the content of a file is a picture or a model, which becomes the body of a level.
     pub fn is_body_in(bytes: &[u8]) -> bool {
-        frame::of(FileType::of(bytes)).is_some()
+        frame::level_around(FileType::of(bytes)).is_some()
     }
 
     /// Reads a level that was stored with [`Level::text_to_keep`].
@@ -406,10 +406,15 @@ fn nothing() -> io::Result<Vec<u8>> {
     Err(io::ErrorKind::NotFound.into())
 }
 
-/// Returns whether the bytes are a text with a line that begins with `beginning`.
+/// Returns whether the bytes are a text with a line that begins with `beginning`. Spaces in the line are ignored:
+/// `[ game ]` is the same in TOML as `[game]`.
 pub(crate) fn has_line(bytes: &[u8], beginning: &str) -> bool {
     let text = std::str::from_utf8(bytes).unwrap_or_default();
-    text.lines().any(|line| line.starts_with(beginning))
+    let length = beginning.chars().count();
+    text.lines().any(|line| {
+        let letters = line.chars().filter(|letter| !letter.is_whitespace());
+        letters.take(length).eq(beginning.chars())
+    })
 }
 
 /// Returns the bytes of a file as a text. Fails if the file has more than `most` bytes or is no text.
@@ -463,6 +468,17 @@ mod tests {
             let checked = scene.and_then(|scene| Level::from_scene(id, scene));
             assert!(checked.is_ok(), "{id}: {checked:?}");
         }
+    }
+
+    #[test]
+    fn has_line_ignores_spaces() {
+        for text in ["dim = 2\n[game]\n", "  [game]", "\t[ game ]\r\n"] {
+            assert!(has_line(text.as_bytes(), "[game]"), "{text:?}");
+        }
+        for text in ["", "[gam", "# [game]", "name = \"[game]\"", "[games]"] {
+            assert!(!has_line(text.as_bytes(), "[game]"), "{text:?}");
+        }
+        assert!(has_line(b"version = 7\n  level_hash = \"0\"", "level_hash"));
     }
 
     #[test]

@@ -79,8 +79,8 @@ impl Link {
     /// [`LinkError`] if the text is no link, is damaged, or has content that cannot be played.
     pub fn read(text: &str) -> Result<Self, LinkError> {
         let mut problem = LinkError::Other;
-        for fragment in pasted::fragments(text) {
-            match unsealed(&fragment) {
+        for fragment in pasted::candidates(text).fragments() {
+            match unsealed(fragment) {
                 Ok((kind, bytes)) => return Self::of(kind, &bytes),
                 Err(error) => problem = error,
             }
@@ -152,7 +152,7 @@ impl Replay {
         Ok(SentRound {
             game: self.game.clone(),
             level: SentLevel::of(&self.level, &self.scene)?,
-            outcome: self.outcome,
+            outcome: self.stored_outcome(),
             hashes: self.hashes.iter().map(|hash| last_digits(hash)).collect(),
             ticks: self.ticks() as u32,
             frames: frames::write(&played),
@@ -201,6 +201,7 @@ pub fn address(page: &str, fragment: &str) -> String {
 struct SentRound {
     game: String,
     level: SentLevel,
+    /// As [`Replay::stored_outcome`].
     outcome: Option<Outcome>,
     /// The last four hexadecimal digits of each hash.
     hashes: Vec<[u8; 2]>,

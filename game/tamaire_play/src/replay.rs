@@ -33,7 +33,8 @@ pub struct Replay {
     pub level: String,
     /// Hash of the level in hexadecimal.
     pub level_hash: String,
-    /// Outcome, if the round was won.
+    /// Outcome, if the round was won. Its ticks count from the first push here, and from the start of the
+    /// recording in files and links.
     pub outcome: Option<Outcome>,
     /// Hexadecimal digits of the world's hash after every sixtieth tick and after the last tick. All sixteen
     /// digits, or the last four if the replay came from a link.
@@ -137,8 +138,8 @@ impl Replay {
         Ok(replay.timed_from_first_push())
     }
 
-    /// Returns the replay with the ticks of its outcome counted from the first input that moves a hand. Older
-    /// versions of the game counted all ticks of the recording.
+    /// Returns the replay with the ticks of its outcome counted from the first input that moves a hand. Files
+    /// and links count all ticks of the recording, see [`Replay::stored_outcome`].
     pub(crate) fn timed_from_first_push(mut self) -> Self {
         let (all, clock) = (self.ticks() as u64, self.clock_ticks() as u64);
         if let Some(outcome) = &mut self.outcome
@@ -147,6 +148,19 @@ impl Replay {
             outcome.ticks = clock;
         }
         self
+    }
+
+    /// Returns the outcome for files and links, with all ticks of the recording, as every game of this
+    /// [`VERSION`] expects. The time on the clock follows from the recorded input.
+    pub(crate) fn stored_outcome(&self) -> Option<Outcome> {
+        let (all, clock) = (self.ticks() as u64, self.clock_ticks() as u64);
+        let mut outcome = self.outcome;
+        if let Some(outcome) = &mut outcome
+            && outcome.ticks == clock
+        {
+            outcome.ticks = all;
+        }
+        outcome
     }
 
     /// Checks that the parts of the replay match each other, and that none is too long.
@@ -192,7 +206,12 @@ impl Replay {
 
     /// Returns the replay as a text.
     pub fn text(&self) -> String {
-        toml::to_string(self).expect("every field of a replay can be serialized")
+        let outcome = self.stored_outcome();
+        let stored = Self {
+            outcome,
+            ..self.clone()
+        };
+        toml::to_string(&stored).expect("every field of a replay can be serialized")
     }
 
     /// Returns the replay as a text for storing. Checks that the text can be read and watched.
@@ -327,7 +346,7 @@ impl Playback {
     }
 
     /// Returns whether the next tick is the first one that moves a hand, which starts the clock.
-    pub fn is_before_first_push(&self) -> bool {
+    pub fn starts_clock_next(&self) -> bool {
         self.tick == self.idle_ticks
     }
 
@@ -426,6 +445,12 @@ mod tests {
         let replay = Replay::of(&round);
         assert_eq!(replay.outcome, Some(outcome));
         assert_eq!(replay.seconds(), outcome.seconds());
+        let all = format!("ticks = {}\n", replay.ticks());
+        assert!(replay.text().contains(&all), "files count all ticks");
+        assert_eq!(
+            replay.stored_outcome().unwrap().ticks,
+            replay.ticks() as u64
+        );
         assert_eq!(Replay::read(&replay.text()).unwrap(), replay);
         let Ok(Link::Round(sent)) = Link::read(&replay.link().unwrap()) else {
             panic!("no round");
@@ -434,7 +459,7 @@ mod tests {
     }
 
     #[test]
-    fn replay_that_counted_all_ticks_is_still_genuine() {
+    fn replay_with_all_ticks_in_its_outcome_is_genuine() {
         let round = won_after_waiting();
         let mut old = Replay::of(&round);
         let clock = old.outcome.unwrap().ticks;

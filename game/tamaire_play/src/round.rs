@@ -239,7 +239,9 @@ impl<D: Dim> Round<D> {
 
 /// Returns the targets of all hands of a level at the start [m]. In 2D the third coordinate is zero.
 pub(crate) fn start_targets(scene: &Scene) -> Vec<Vec3> {
-    let targets = scene.hand_targets(0).into_iter().map(Vec3::from);
+    // `hand_targets(0)` would be the targets at the end of the first tick.
+    let hands = scene.hand.iter();
+    let targets = hands.map(|hand| Vec3::from(hand.target(0.0)));
     match scene.dim {
         2 => targets.map(|target| target.with_z(0.0)).collect(),
         _ => targets.collect(),
@@ -283,5 +285,12 @@ mod tests {
             lost: 0,
         });
         assert_eq!(Replay::of(&round).outcome, None);
+    }
+
+    #[test]
+    fn start_targets_of_a_moving_hand_are_at_the_beginning_of_its_path() {
+        let mut scene = Level::open("classic").unwrap().scene().clone();
+        scene.hand[0].path = vec![[0.0, 1.0, 2.0, 0.0], [1.0, 7.0, 2.0, 0.0]];
+        assert_eq!(start_targets(&scene)[0], Vec3::new(1.0, 2.0, 0.0));
     }
 }

@@ -52,6 +52,7 @@ pub struct Progress {
 #[serde(deny_unknown_fields)]
 pub struct Outcome {
     /// Number of ticks from the first input that moved a hand to the win; 0 if no hand was moved.
+    /// Files and links hold the number of all ticks up to the win instead.
     pub ticks: u64,
     /// Route of the win.
     pub route: Route,

@@ -423,7 +423,7 @@ fn damaged_links_are_rejected() {
         for more in ["z", "AAAA"] {
             assert!(Link::read(&format!("{link}{more}")).is_err(), "{more}");
         }
-        // What is in no fragment ends the link.
+        // A character that no fragment contains ends the link.
         for more in [".", "ü", "🙂z"] {
             assert!(Link::read(&format!("{link}{more}")).is_ok(), "{more}");
         }

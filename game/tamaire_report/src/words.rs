@@ -136,14 +136,18 @@ fn sure(some: u64, all: u64) -> [String; 3] {
     percents.map(|share| format!("{:.0}", 100.0 * share))
 }
 
+/// Maximum number of hours that a caption names.
+const MOST_HOURS: usize = 3;
+
 /// Returns the hours in which most visits began, and the number of visits in each of them. Several hours are
-/// returned only if they have the same number. `None` without a visit.
+/// returned only if they have the same number. `None` without a visit, and for more than [`MOST_HOURS`] hours.
 fn busiest(figures: &Figures) -> Option<(Vec<usize>, u64)> {
     let most = figures.hours.iter().map(|hour| hour.visits).max();
     let most = most.filter(|most| *most > 0)?;
     let hours = figures.hours.iter().enumerate();
     let hours = hours.filter(|(_, of_it)| of_it.visits == most);
-    Some((hours.map(|(hour, _)| hour).collect(), most))
+    let hours: Vec<usize> = hours.map(|(hour, _)| hour).collect();
+    (hours.len() <= MOST_HOURS).then_some((hours, most))
 }
 
 /// Returns the number of rounds that ended in two pieces, and the number that ended in more than 128.
@@ -167,8 +171,8 @@ mod tests {
     use crate::figures::Hour;
 
     #[test]
-    fn hours_with_equally_many_visits_are_all_named() {
-        let caption = |visits: [u64; 3]| {
+    fn up_to_three_hours_with_equally_many_visits_are_named() {
+        let caption = |visits: [u64; 4]| {
             let mut figures = Figures::default();
             let hour = |visits| Hour {
                 visits,
@@ -177,19 +181,27 @@ mod tests {
             figures.hours = visits.map(hour).into();
             [&ENGLISH, &JAPANESE].map(|words| (words.hours.caption)(&figures))
         };
-        let [english, japanese] = caption([1, 3, 2]);
+        let [english, japanese] = caption([1, 3, 2, 0]);
         assert!(
             english.ends_with(" The busiest hour had 3 visits, beginning between 1:00 and 2:00.")
         );
         assert!(japanese.ends_with("来場が最も多かったのは1時台で、3組でした。"));
-        let [english, japanese] = caption([2, 1, 2]);
+        let [english, japanese] = caption([2, 1, 2, 0]);
         assert!(
-            english.ends_with(" The busiest hours, from 0:00 and 2:00, had 2 visits each."),
+            english.ends_with(" The busiest hours began at 0:00 and 2:00, with 2 visits each."),
             "{english}"
         );
         assert!(japanese.ends_with("来場が最も多かったのは0時台と2時台で、それぞれ2組でした。"));
-        let [english, japanese] = caption([0, 0, 0]);
-        assert!(english.ends_with("in which they began."), "{english}");
-        assert!(japanese.ends_with("ラウンドの数です。"));
+        let [english, japanese] = caption([1, 0, 1, 1]);
+        let expected = " The busiest hours began at 0:00, 2:00 and 3:00, with 1 visit each.";
+        assert!(english.ends_with(expected), "{english}");
+        assert!(
+            japanese.ends_with("来場が最も多かったのは0時台、2時台、3時台で、それぞれ1組でした。")
+        );
+        for visits in [[0; 4], [5; 4]] {
+            let [english, japanese] = caption(visits);
+            assert!(english.ends_with("in which they began."), "{english}");
+            assert!(japanese.ends_with("ラウンドの数です。"));
+        }
     }
 }

@@ -3,7 +3,7 @@
 
 use std::fs::{self, File};
 use std::io::pipe;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn command(program: &str, folder: &Path, arguments: &str) -> Command {
@@ -20,6 +20,20 @@ fn command(program: &str, folder: &Path, arguments: &str) -> Command {
 
 fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Returns the paths of all files and folders below a folder, sorted.
+fn listing(folder: &Path) -> Vec<PathBuf> {
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            paths.extend(listing(&path));
+        }
+        paths.push(path);
+    }
+    paths.sort();
+    paths
 }
 
 /// Checks that a command that prints something ends quietly if its reader has ended, as in `| head -1`, and
@@ -68,7 +82,7 @@ pub fn check_files(program: &str, folder: &Path, arguments: &str, files: &[&str]
     for name in files {
         fs::write(folder.join(name), "old").unwrap();
     }
-    let before = fs::read_dir(folder).unwrap().count();
+    let before = listing(folder);
     // A limit on the size of files stands for a full disk. A block has 512 or 1024 bytes, depending on the
     // shell.
     let script = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
@@ -88,8 +102,11 @@ pub fn check_files(program: &str, folder: &Path, arguments: &str, files: &[&str]
         text.contains(last) && text.contains("File too large"),
         "{arguments}: {text}"
     );
-    assert_eq!(fs::read_to_string(folder.join(last)).unwrap(), "old");
-    assert_eq!(fs::read_dir(folder).unwrap().count(), before, "{arguments}");
+    for name in files {
+        let text = fs::read_to_string(folder.join(name)).unwrap();
+        assert_eq!(text, "old", "{arguments}: {name}");
+    }
+    assert_eq!(listing(folder), before, "{arguments}");
     assert!(
         output.stdout.is_empty(),
         "{arguments}: printed before it failed"

@@ -2,7 +2,6 @@
 
 use super::section::Shown;
 use crate::case::Case;
-use crate::phantom;
 use app_shell::Theme;
 use app_shell::widgets::{ButtonStyle, button};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2};
@@ -36,8 +35,8 @@ const SQUARE: f32 = 16.0;
 const MOST_ROWS: usize = 12;
 
 /// Shows the button that opens or closes the help in the upper left corner of the view, and the open help below
-/// it.
-pub fn show(ui: &mut Ui, theme: &Theme, view: Rect, is_open: &mut bool) {
+/// it. Returns the rectangles of both.
+pub fn show(ui: &mut Ui, theme: &Theme, view: Rect, is_open: &mut bool) -> Vec<Rect> {
     let place = Rect::from_min_size(view.min + vec2(EDGE, EDGE), BUTTON);
     let weight = ButtonStyle::of(*is_open);
     let builder = UiBuilder::new().max_rect(place);
@@ -46,7 +45,7 @@ pub fn show(ui: &mut Ui, theme: &Theme, view: Rect, is_open: &mut bool) {
         *is_open = !*is_open;
     }
     if !*is_open {
-        return;
+        return vec![place];
     }
     let size = vec2(
         WIDE.min(view.width() - 2.0 * EDGE),
@@ -69,6 +68,7 @@ pub fn show(ui: &mut Ui, theme: &Theme, view: Rect, is_open: &mut bool) {
         );
         painter.text(pos2(right, y), Align2::RIGHT_CENTER, keys, font, ink);
     }
+    vec![place, card]
 }
 
 /// Shows the legend of the colours of the slices in the lower left corner of the view.
@@ -78,7 +78,7 @@ pub fn legend(ui: &Ui, theme: &Theme, view: Rect, case: &Case, shown: Shown, col
         Shown::Strain => [0.0, 0.25, 0.5]
             .map(|strain| {
                 (
-                    colours.strain(strain),
+                    Some(colours.strain(strain)),
                     format!("strain {:.0} %", 100.0 * strain),
                 )
             })
@@ -105,36 +105,29 @@ pub fn legend(ui: &Ui, theme: &Theme, view: Rect, case: &Case, shown: Shown, col
         let y = card.top() + 8.0 + 24.0 * (row as f32 + 0.5);
         let middle = pos2(card.left() + 14.0 + 0.5 * SQUARE, y);
         let square = Rect::from_center_size(middle, vec2(SQUARE, SQUARE));
-        painter.rect(
-            square,
-            4.0,
-            screen(colour),
-            Stroke::new(1.0, theme.ink),
-            StrokeKind::Inside,
-        );
+        if let Some(colour) = colour {
+            painter.rect(
+                square,
+                4.0,
+                screen(colour),
+                Stroke::new(1.0, theme.ink),
+                StrokeKind::Inside,
+            );
+        }
         let at: Pos2 = pos2(square.right() + 8.0, y - 0.5 * text.size().y);
         painter.galley(at, text, theme.ink);
     }
 }
 
-/// Returns the colour and the name of each material of the organ, at most [`MOST_ROWS`]. Materials of a scan have
-/// numbers only.
-fn materials(case: &Case, colours: &Palette) -> Vec<(Colour, String)> {
-    let last = case.tissues.len().min(MOST_ROWS) as u8;
-    (1..=last)
-        .map(|number| (colours.material(number), name_of(case, number)))
-        .collect()
-}
-
-/// Returns the name of a material.
-fn name_of(case: &Case, number: u8) -> String {
-    let names: &[&str] = if case.name == phantom::NAME {
-        &phantom::MATERIALS
-    } else {
-        &[]
-    };
-    let name = names.get(usize::from(number) - 1);
-    name.map_or_else(|| format!("material {number}"), |name| (*name).to_string())
+/// Returns the colour and the name of each material of the organ, at most [`MOST_ROWS`], and a row without a colour
+/// that counts the others. Materials of a scan have numbers only.
+fn materials(case: &Case, colours: &Palette) -> Vec<(Option<Colour>, String)> {
+    let count = case.tissues.len();
+    let last = count.min(MOST_ROWS) as u8;
+    let named =
+        (1..=last).map(|number| (Some(colours.material(number)), case.material_name(number)));
+    let more = (count > MOST_ROWS).then(|| (None, format!("and {} more", count - MOST_ROWS)));
+    named.chain(more).collect()
 }
 
 fn screen(colour: Colour) -> Color32 {
@@ -145,9 +138,10 @@ fn screen(colour: Colour) -> Color32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::phantom;
 
     #[test]
-    fn legend_names_materials_of_the_phantom_and_numbers_others() {
+    fn legend_names_materials_and_numbers_those_without_a_name() {
         let colours = crate::app::pictures::palette();
         let mut case = phantom::case(32).unwrap();
         let names = |case: &Case| -> Vec<String> {
@@ -156,10 +150,13 @@ mod tests {
                 .collect()
         };
         assert_eq!(names(&case), ["flesh", "core", "growth", "vessels"]);
-        case.name = "brain".into();
+        case.names.clear();
         case.tissues.truncate(2);
         assert_eq!(names(&case), ["material 1", "material 2"]);
         case.tissues = crate::case::tissues(255);
+        assert_eq!(names(&case).len(), MOST_ROWS + 1);
+        assert_eq!(names(&case)[MOST_ROWS], "and 243 more");
+        case.tissues.truncate(MOST_ROWS);
         assert_eq!(names(&case).len(), MOST_ROWS);
     }
 }

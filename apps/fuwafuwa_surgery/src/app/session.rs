@@ -37,7 +37,7 @@ pub struct Session {
     pub sliced: [Vec3; 2],
     /// Whether the tip of the tool stays under the pointer, because the mouse moved it last.
     pub follows_pointer: bool,
-    /// Whether the forceps have closed without tissue, until the user was told.
+    /// Whether the forceps closed on nothing since the last message.
     pub has_gripped_nothing: bool,
     /// Whether the procedure is paused.
     pub is_paused: bool,

@@ -149,7 +149,10 @@ impl Memory {
         self.best = ids;
         let replays = best.iter();
         let replays = replays.filter_map(|round| Replay::of_fragment(&round.replay).ok());
-        Some(replays.map(Arc::new).collect())
+        let mut replays: Vec<Replay> = replays.collect();
+        // The times in the logbook include the time before the first push.
+        replays.sort_by_key(Replay::clock_ticks);
+        Some(replays.into_iter().map(Arc::new).collect())
     }
 
     /// Advances by a frame of `seconds` [s]: handles storage events, repeats the queries to the logbook, and

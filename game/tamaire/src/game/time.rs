@@ -113,8 +113,9 @@ impl Game {
                     return InputFrame::default();
                 }
                 // A player who joins now begins at the start position of the level.
-                let targets = round.level().scene().hand_targets(0);
-                let mut targets: Vec<Vec3> = targets.into_iter().map(Vec3::from).collect();
+                let hands = round.level().scene().hand.iter();
+                let starts = hands.map(|hand| Vec3::from(hand.target(0.0)));
+                let mut targets: Vec<Vec3> = starts.collect();
                 for (target, hand) in targets.iter_mut().zip(round.hands()) {
                     *target = hand.target;
                 }

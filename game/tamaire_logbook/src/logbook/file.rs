@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 use tempfile::TempDir;
 
 /// A damaged file that was renamed, together with SQLite's files beside it.
@@ -23,6 +23,8 @@ pub struct SetAside {
 
 /// Time for which SQLite waits for another program's lock.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(2);
+/// Maximum number of copies made for reading, if a program writes the file during each.
+const MAX_COPIES: usize = 5;
 /// Suffixes of the files that SQLite creates beside a database.
 const SIDECAR_SUFFIXES: [&str; 3] = ["-wal", "-shm", "-journal"];
 /// A version number that is larger than [`VERSION`] by this amount or more counts as damage, not as a newer
@@ -86,19 +88,7 @@ pub fn read(path: &Path) -> Result<(Connection, Option<TempDir>), Error> {
     if found.len() == 0 {
         return Err(damaged(path, "the file is empty"));
     }
-    let [log, memory] =
-        [SIDECAR_SUFFIXES[0], SIDECAR_SUFFIXES[1]].map(|suffix| sidecar_path(path, suffix));
-    let (connection, copy) = match (size(&log), memory.exists()) {
-        // A program that has the file open, or was killed, leaves both files beside it.
-        (_, true) => (connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?, None),
-        // No program has the file open, and no log belongs to it.
-        (0, false) => (connect_immutable(path)?, None),
-        // Reading a log requires the shared memory, which SQLite would create beside the file.
-        (_, false) => {
-            let (connection, copy) = connect_copy(path, &log)?;
-            (connection, Some(copy))
-        }
-    };
+    let (connection, copy) = connect_for_reading(path)?;
     check(path, &connection).map_err(|error| match error {
         Error::Unusable { path, reason } => {
             let reason =
@@ -116,24 +106,75 @@ pub fn read(path: &Path) -> Result<(Connection, Option<TempDir>), Error> {
     }
 }
 
-/// Opens a file to which no program writes, also on a read-only medium: without locks and shared memory.
-fn connect_immutable(path: &Path) -> Result<Connection, Error> {
-    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI;
-    connect(&immutable_uri(path), flags)
+/// Opens the file itself while a program has it open. Otherwise copies the file and its write-ahead log to a
+/// temporary folder and opens the copy: SQLite would create files beside the original, and a program may begin
+/// to write at any time.
+fn connect_for_reading(path: &Path) -> Result<(Connection, Option<TempDir>), Error> {
+    let state = || State::of(path).map_err(|error| unusable(path, &error));
+    for _ in 0..MAX_COPIES {
+        let before = state()?;
+        if before.is_open() {
+            let connection = connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+            return Ok((connection, None));
+        }
+        let (folder, copy) = copied(path).map_err(|error| unusable(path, &error))?;
+        if state()? == before {
+            let connection = connect(&copy, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+            return Ok((connection, Some(folder)));
+        }
+    }
+    Err(Error::Locked(path.into()))
 }
 
-/// Copies a file and its write-ahead log to a temporary folder, and opens the copy.
-fn connect_copy(path: &Path, log: &Path) -> Result<(Connection, TempDir), Error> {
-    let copied = || {
-        let folder = tempfile::tempdir()?;
-        let copy = folder.path().join("copy.sqlite");
-        fs::copy(path, &copy)?;
-        fs::copy(log, sidecar_path(&copy, SIDECAR_SUFFIXES[0]))?;
-        Ok((folder, copy))
+/// Copies a file and its write-ahead log, if any, to a temporary folder. Returns the folder and the path of the
+/// copy.
+fn copied(path: &Path) -> io::Result<(TempDir, PathBuf)> {
+    // Without the permissions of the original, so that SQLite can write its log beside the copy.
+    let copy_bytes = |from: &Path, to: &Path| {
+        let mut from = File::open(from)?;
+        io::copy(&mut from, &mut File::create(to)?)
     };
-    let (folder, copy) = copied().map_err(|error| unusable(path, &error))?;
-    let connection = connect(&copy, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
-    Ok((connection, folder))
+    let folder = tempfile::tempdir()?;
+    let copy = folder.path().join("copy.sqlite");
+    copy_bytes(path, &copy)?;
+    let log = SIDECAR_SUFFIXES[0];
+    match copy_bytes(&sidecar_path(path, log), &sidecar_path(&copy, log)) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok((folder, copy)),
+    }
+}
+
+/// State of a file and of SQLite's files beside it. Two equal states mean that no program wrote in between.
+#[derive(PartialEq)]
+struct State {
+    file: Stamp,
+    log: Option<Stamp>,
+    has_memory: bool,
+}
+
+/// Length [bytes] and modification time of a file.
+type Stamp = (u64, Option<SystemTime>);
+
+impl State {
+    fn of(path: &Path) -> io::Result<Self> {
+        let stamp = |path: &Path| {
+            let found = fs::metadata(path)?;
+            Ok::<Stamp, io::Error>((found.len(), found.modified().ok()))
+        };
+        let [log, memory] =
+            [SIDECAR_SUFFIXES[0], SIDECAR_SUFFIXES[1]].map(|suffix| sidecar_path(path, suffix));
+        Ok(Self {
+            file: stamp(path)?,
+            log: stamp(&log).ok(),
+            has_memory: memory.exists(),
+        })
+    }
+
+    /// Returns whether a program has the file open, or was killed while it had. A `-shm` file alone is left
+    /// over: SQLite creates it after the log and removes it before the log.
+    fn is_open(&self) -> bool {
+        self.has_memory && self.log.is_some()
+    }
 }
 
 /// Renames a damaged file, and SQLite's files beside it, to a name with the date.
@@ -345,17 +386,4 @@ fn name_aside(path: &Path, now: Moment) -> PathBuf {
     let is_free =
         |path: &PathBuf| !path.exists() && !sidecar_path(path, SIDECAR_SUFFIXES[0]).exists();
     paths.find(is_free).expect("the counter is unbounded")
-}
-
-/// Returns the URI of a file with `immutable=1`, which tells SQLite that no program writes the file.
-fn immutable_uri(path: &Path) -> PathBuf {
-    let mut address = String::from("file:");
-    for byte in path.as_os_str().as_encoded_bytes() {
-        match byte {
-            b'/' | b'.' | b'-' | b'_' => address.push(char::from(*byte)),
-            byte if byte.is_ascii_alphanumeric() => address.push(char::from(*byte)),
-            byte => address.push_str(&format!("%{byte:02x}")),
-        }
-    }
-    (address + "?immutable=1").into()
 }

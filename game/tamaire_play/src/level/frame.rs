@@ -6,14 +6,14 @@ use fuwafuwa_scenes::import::FileType;
 use fuwafuwa_scenes::scene::{Scene, SceneError};
 
 /// Share of the room that a body may take on an axis.
-const FILLED: f32 = 0.9;
+const MAX_ROOM_SHARE: f32 = 0.9;
 
 /// Minimum distance of a body from the basket [m].
-const APART: f32 = 0.1;
+const BASKET_GAP: f32 = 0.1;
 
 /// Returns the name of the built-in level in which a picture or a model replaces the body; `None` for a file of
 /// another type.
-pub(super) fn of(found: FileType) -> Option<&'static str> {
+pub(super) fn level_around(found: FileType) -> Option<&'static str> {
     match found {
         FileType::Vox => Some("classic-3d"),
         found if found.is_readable_picture() => Some("classic"),
@@ -55,9 +55,8 @@ impl BodySize {
     }
 }
 
-/// Scales the first body of a scene to the area or volume of the body before it, so that the basket is as tight
-/// as for that body, but limits the body to the room on the left of the basket. Places the body where the
-/// body before it was.
+/// Scales the first body to the area (volume in 3D) of the body that it replaces, so that the basket stays as
+/// tight. Limits it to the room left of the basket. Keeps its left edge, and its centre on the other axes.
 pub(super) fn fit_body(scene: &mut Scene, before: &BodySize) -> Result<(), SceneError> {
     let own = BodySize::of(scene)?;
     let ratio = before.content / own.content;
@@ -67,7 +66,9 @@ pub(super) fn fit_body(scene: &mut Scene, before: &BodySize) -> Result<(), Scene
     };
     let [low, high] = scene.view;
     let basket = scene.game.as_ref().and_then(|game| game.basket.as_ref());
-    let right = basket.map_or(high[0], |basket| basket.centre[0] - basket.half[0] - APART);
+    let right = basket.map_or(high[0], |basket| {
+        basket.centre[0] - basket.half[0] - BASKET_GAP
+    });
     let floats = scene.gravity[1] == 0.0;
     let dim = usize::from(scene.dim);
     let Some(body) = scene.body.first_mut() else {
@@ -75,8 +76,8 @@ pub(super) fn fit_body(scene: &mut Scene, before: &BodySize) -> Result<(), Scene
     };
     let rooms = [
         right - body.at[0],
-        FILLED * (high[1] - if floats { low[1] } else { body.at[1] }),
-        FILLED * (high[2] - low[2]),
+        MAX_ROOM_SHARE * (high[1] - if floats { low[1] } else { body.at[1] }),
+        MAX_ROOM_SHARE * (high[2] - low[2]),
     ];
     let fits = (0..dim).map(|axis| rooms[axis] / own.widths[axis]);
     let scale = fits.fold(wanted, f32::min);

@@ -1,6 +1,6 @@
 //! Links as mail and chat programs leave them: percent-encoded, wrapped, quoted, or with punctuation around.
 
-use super::{END, LEVEL, ROUND};
+use super::{END, LEVEL, MAX_LENGTH, ROUND};
 use std::borrow::Cow;
 
 /// Maximum length of a text that is searched for a link [bytes]; the rest is ignored.
@@ -15,31 +15,47 @@ pub fn is_link(text: &str) -> bool {
     start.starts_with("https://") || start.starts_with("http://") || start_of(&text).is_some()
 }
 
-/// Returns the fragments that a text may stand for, in the order in which they are tried. Line breaks and
-/// spaces may be part of a wrapped fragment, or its end. The last fragment is that of the whole text.
-pub fn fragments(text: &str) -> Vec<String> {
+/// Fragments that a text may stand for: beginnings of one text.
+pub struct Candidates {
+    text: String,
+    /// Lengths of the fragments, in the order in which they are tried [bytes].
+    ends: Vec<usize>,
+}
+
+impl Candidates {
+    /// Returns the fragments in the order in which they are tried.
+    pub fn fragments(&self) -> impl Iterator<Item = &str> {
+        self.ends.iter().map(|&end| &self.text[..end])
+    }
+}
+
+/// Finds the fragments that a text may stand for. Line breaks and spaces may be part of a wrapped fragment, or
+/// its end. The last fragment is that of the whole text. Besides the last one, fragments longer than a link are
+/// left out.
+pub fn candidates(text: &str) -> Candidates {
     let text = decoded(text);
     let start = start_of(&text)
         .or_else(|| text.find('#').map(|at| at + 1))
         .unwrap_or(0);
     let mut fragment = String::new();
-    let mut fragments = Vec::new();
+    let mut ends = Vec::new();
     for word in text[start..].split_whitespace() {
         // Signs of quoted mails at the beginnings of lines.
         let word = word.trim_start_matches(['>', '|']);
         let end = word.find(|letter| !is_of_fragment(letter));
         fragment.push_str(&word[..end.unwrap_or(word.len())]);
-        if end.is_some() || fragment.ends_with(END) {
-            fragments.push(fragment.clone());
-        }
         if end.is_some() {
-            return fragments;
+            break;
+        }
+        if fragment.ends_with(END) && fragment.len() <= MAX_LENGTH {
+            ends.push(fragment.len());
         }
     }
-    if fragments.last() != Some(&fragment) {
-        fragments.push(fragment);
+    if ends.last() != Some(&fragment.len()) {
+        ends.push(fragment.len());
     }
-    fragments
+    let text = fragment;
+    Candidates { text, ends }
 }
 
 /// Returns the offset of the fragment of a link in a text, behind its `#`.
@@ -93,7 +109,9 @@ fn unescaped(text: &str, sign: char) -> String {
     let mut parts = text.split(sign);
     let mut whole = String::from(parts.next().unwrap_or_default());
     for part in parts {
-        let digits = part.get(..2);
+        // `from_str_radix` alone would accept a sign, as in `+5`.
+        let is_digits = |digits: &&str| digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let digits = part.get(..2).filter(is_digits);
         let code = digits.and_then(|digits| u8::from_str_radix(digits, 16).ok());
         match code.filter(u8::is_ascii) {
             Some(code) => {
@@ -118,4 +136,36 @@ fn is_invisible(letter: char) -> bool {
         letter,
         '\u{200b}'..='\u{200f}' | '\u{2060}' | '\u{ad}' | '\u{feff}' | '\\'
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fragments(text: &str) -> Vec<String> {
+        candidates(text).fragments().map(String::from).collect()
+    }
+
+    #[test]
+    fn candidates_of_a_text_of_many_ends_are_few() {
+        let text = format!("#r1{}", "z ".repeat(131_000));
+        let found = candidates(&text);
+        // The fragments "r1z" to that of 16 000 characters, and that of the whole text.
+        assert_eq!(found.ends.len(), MAX_LENGTH - 2 + 1);
+        assert!(found.text.len() <= MOST_BYTES);
+        assert_eq!(found.fragments().next(), Some("r1z"));
+    }
+
+    #[test]
+    fn candidates_end_at_each_z_and_at_foreign_letters() {
+        assert_eq!(fragments("x#r1az bz c"), ["r1az", "r1azbz", "r1azbzc"]);
+        assert_eq!(fragments("x#r1az bc, dz"), ["r1az", "r1azbc"]);
+        assert_eq!(fragments("x#r1az) bz"), ["r1az"]);
+    }
+
+    #[test]
+    fn unescaped_requires_two_hexadecimal_digits() {
+        assert_eq!(unescaped("a%+5b%41%4", '%'), "a%+5bA%4");
+        assert_eq!(unescaped("=\nr=3D=-1", '='), "r==-1");
+    }
 }

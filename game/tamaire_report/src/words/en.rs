@@ -60,7 +60,7 @@ pub static ENGLISH: Words = Words {
                     hour + 1
                 ),
                 hours => format!(
-                    " The busiest hours, from {}, had {} each.",
+                    " The busiest hours began at {}, with {} each.",
                     listed(hours),
                     plural(visits, "visit")
                 ),

@@ -51,7 +51,7 @@ pub static JAPANESE: Words = Words {
                 let hours: Vec<String> = hours.iter().map(|hour| format!("{hour}時台")).collect();
                 format!(
                     "来場が最も多かったのは{}で、{each}{}組でした。",
-                    hours.join("と"),
+                    hours.join(if hours.len() > 2 { "、" } else { "と" }),
                     grouped(visits)
                 )
             });

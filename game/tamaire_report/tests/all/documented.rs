@@ -27,10 +27,10 @@ fn every_name_in_the_output_is_documented() {
     report_on(&files, &out, &all_files()).unwrap();
     let text = |name: &str| std::fs::read_to_string(out.join(name)).unwrap();
     let mut found = BTreeSet::new();
-    names(
-        &serde_json::from_str(&text("report.json")).unwrap(),
-        &mut found,
-    );
+    let report: Value = serde_json::from_str(&text("report.json")).unwrap();
+    let format = format!("| `format`, `rules` | {};", report["format"]);
+    assert!(described.contains(&format), "{format}");
+    names(&report, &mut found);
     for table in ["visits.csv", "rounds.csv", "events.csv"] {
         let columns = text(table);
         // Excel recognises UTF-8 by the byte order mark.
