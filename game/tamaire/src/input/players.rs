@@ -71,6 +71,13 @@ struct Aim {
     is_seen: bool,
 }
 
+impl Aim {
+    fn seen(position: Vec3) -> Self {
+        let is_seen = true;
+        Self { position, is_seen }
+    }
+}
+
 /// Requests of a player's devices in a tick.
 #[derive(Default)]
 struct Asked {
@@ -344,16 +351,12 @@ impl Players {
         }
         let wheel = rises * devices.lift;
         if holds(InputSource::Pointer) && (devices.pointer.is_some() || wheel != 0.0) {
-            let seen = devices.pointer.map(|position| Aim {
-                position,
-                is_seen: true,
-            });
-            asked.position = seen.or(asked.position);
+            asked.position = devices.pointer.map(Aim::seen).or(asked.position);
             asked.wheel = wheel;
             self.used[player] = Some(InputSource::Pointer);
         }
         if player == 1 && self.second == Some(InputSource::Finger) && devices.second.is_some() {
-            asked.position = devices.second;
+            asked.position = devices.second.map(Aim::seen);
             self.used[1] = Some(InputSource::Finger);
         }
         asked
