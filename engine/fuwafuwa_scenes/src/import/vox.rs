@@ -54,6 +54,7 @@ pub struct Model {
     palette: Palette,
     notes: Vec<ImportNote>,
     work: usize,
+    is_alone: bool,
 }
 
 /// Imports a MagicaVoxel file with voxels of edge length `voxel_size` [m]. The palette index of a voxel is
@@ -142,6 +143,7 @@ impl Model {
             solid,
             palette,
             notes: Vec::new(),
+            is_alone: true,
         })
     }
 
@@ -159,6 +161,12 @@ impl Model {
     /// Returns notes on what was left out of the model, and on overlaps.
     pub fn notes(&self) -> &[ImportNote] {
         &self.notes
+    }
+
+    /// Returns whether the file has no other model and no scene, so that its voxels depend on no rule of
+    /// assembly.
+    pub(crate) fn is_alone(&self) -> bool {
+        self.is_alone
     }
 
     /// Returns the work of decoding the model, in steps that each take some nanoseconds.
@@ -260,6 +268,7 @@ impl Model {
             solid,
             palette: content.palette,
             notes: notes(file, &placed, disputed),
+            is_alone: content.models.len() == 1 && content.graph.is_empty(),
         })
     }
 }
