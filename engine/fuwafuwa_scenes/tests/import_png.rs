@@ -255,7 +255,7 @@ fn decode_rejects_wrong_size_from_header() {
     }
     assert_eq!(
         complaint(&with_size(&one, [most + 1, 1])),
-        "test.png, chunk IHDR at byte 8: 8193 pixels on a side are too many, the limit is 8192"
+        "test.png, chunk IHDR at byte 8: 8193 pixels on a side are too many, the limit is 8192; scale the picture down to 99 %"
     );
     // The header states more pixels than a file of this length can contain at the best compression.
     assert_eq!(

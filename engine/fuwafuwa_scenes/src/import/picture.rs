@@ -4,9 +4,10 @@ use super::colours::Colours;
 use super::content::FileType;
 use super::drawing;
 use super::error::{
-    FilePosition, ImportError, PositionedProblem, in_file, no_grid, too_large, unexpected,
+    FilePosition, ImportError, PositionedProblem, in_file, no_grid, too_large_with, unexpected,
 };
 use super::file::check_length;
+use super::frames;
 use super::mask::Mask;
 use super::note::{Import, ImportNote, NoteKind};
 use super::paper::ink;
@@ -17,6 +18,9 @@ use fuwafuwa::{Dim2, Error, VoxelGrid};
 /// Maximum width and height of a picture [pixels].
 pub const MAX_PIXELS: u32 = 8192;
 
+/// Maximum number of pixels of a picture: 8192 × 6144, as a camera of 50 megapixels takes.
+pub const MAX_AREA: u64 = 3 << 24;
+
 /// Maximum width and height of a decoded picture [pixels]; a larger one is halved. A picture of this size takes
 /// 64 MiB.
 const MAX_DECODED: usize = 4096;
@@ -26,6 +30,8 @@ const MAX_DECODED: usize = 4096;
 pub struct Picture {
     file: String,
     pixels: Pixels,
+    /// Number of frames of an animation that are not imported.
+    later_frames: usize,
 }
 
 /// Size of a picture and its pixels.
@@ -82,15 +88,37 @@ pub fn picture(
 impl Picture {
     /// Decodes a PNG, JPEG, WebP, GIF or BMP file. The content decides the format, not the name. A photo is
     /// turned as its EXIF orientation says. From an animated PNG file, takes the image that viewers without
-    /// animation show; from another animated file, the first frame. `file` is the name used in errors.
+    /// animation show; from another animated file, the first frame. [`Picture::import`] notes how many frames are
+    /// left out. `file` is the name used in errors.
     ///
     /// # Errors
     /// [`ImportError`] if the file is longer than [`super::MAX_FILE_BYTES`], is damaged, truncated or of
-    /// another type, or has more than [`MAX_PIXELS`] on a side.
+    /// another type, or has more than [`MAX_PIXELS`] on a side or more than [`MAX_AREA`] in all.
     pub fn decode(file: &str, bytes: &[u8]) -> Result<Self, ImportError> {
         let pixels = in_file(file, check_length(bytes).and_then(|()| decode(bytes)))?;
-        let file = file.into();
-        Ok(Self { file, pixels })
+        Ok(Self {
+            file: file.into(),
+            pixels,
+            later_frames: frames::left_out(bytes),
+        })
+    }
+
+    /// Returns the number of pixels in the header of a picture file, at most [`MAX_AREA`]; 0 if the header is
+    /// invalid.
+    pub(crate) fn pixels_of(bytes: &[u8]) -> usize {
+        let size = match FileType::of(bytes) {
+            FileType::Png => png::size_of(bytes),
+            found => photo::format_of(found).and_then(|format| photo::size_of(bytes, format)),
+        };
+        let [width, height] = size.unwrap_or_default();
+        MAX_AREA.min(u64::from(width) * u64::from(height)) as usize
+    }
+
+    /// Returns the note on frames of an animation that are not imported.
+    pub(crate) fn frames_note(&self) -> Option<ImportNote> {
+        let left_out = self.later_frames;
+        let kind = NoteKind::Frames { left_out };
+        (left_out > 0).then(|| ImportNote::new(&self.file, kind))
     }
 
     /// Returns width and height [pixels]. A side of more than 4096 pixels was halved.
@@ -122,9 +150,8 @@ impl Picture {
     pub fn import(&self, options: &PictureOptions) -> Result<Import<Dim2>, ImportError> {
         let (grid, kinds) = in_file(&self.file, self.try_import(options))?;
         let notes = kinds.into_iter();
-        let notes = notes
-            .map(|kind| ImportNote::new(&self.file, kind))
-            .collect();
+        let notes = notes.map(|kind| ImportNote::new(&self.file, kind));
+        let notes = self.frames_note().into_iter().chain(notes).collect();
         Ok(Import { grid, notes })
     }
 
@@ -230,9 +257,22 @@ pub(super) fn check_size(
     place: FilePosition,
     [width, height]: [u32; 2],
 ) -> Result<(), PositionedProblem> {
-    let found = width.max(height);
-    let problem = too_large(place, "pixels on a side", found.into(), MAX_PIXELS.into());
-    (found <= MAX_PIXELS).then_some(()).ok_or(problem)
+    let (side, area) = (width.max(height), u64::from(width) * u64::from(height));
+    let (what, found, limit) = if side > MAX_PIXELS {
+        ("pixels on a side", side.into(), MAX_PIXELS.into())
+    } else if area > MAX_AREA {
+        ("pixels", area, MAX_AREA)
+    } else {
+        return Ok(());
+    };
+    let share = f64::from(MAX_PIXELS) / f64::from(side);
+    let share = share.min((MAX_AREA as f64 / area as f64).sqrt());
+    let percent = (100.0 * share) as u32;
+    let advice = match percent {
+        0 => String::new(),
+        _ => format!("; scale the picture down to {percent} %"),
+    };
+    Err(too_large_with(place, what, found, limit, advice))
 }
 
 fn check_options(across: usize, colours: &Colours) -> Result<(), PositionedProblem> {

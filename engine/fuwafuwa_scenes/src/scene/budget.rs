@@ -12,7 +12,7 @@ pub(super) struct Budget {
     pub(super) distances: usize,
     /// Remaining plane tests: one for each cutting plane and voxel of a diced body.
     pub(super) plane_tests: usize,
-    /// Remaining colour comparisons: one for each pixel and named colour of a picture.
+    /// Remaining colour comparisons: one for each pixel of a picture, and one for each pixel and named colour.
     pub(super) colour_comparisons: usize,
     /// Remaining steps of decoding models.
     model_steps: usize,
@@ -26,7 +26,7 @@ impl Budget {
             voxels: 0,
             distances: 1 << 27,
             plane_tests: 1 << 26,
-            // Budget for four pictures of the maximum size with 16 named colours each.
+            // Budget for four pictures of 4096 × 4096 pixels with 16 named colours each.
             colour_comparisons: 1 << 30,
             // Budget for 16 models of the maximum size.
             model_steps: 1 << 29,
@@ -82,6 +82,15 @@ impl Budget {
             format!("expected {most} at most in a body of {voxels} voxels, found {parts}");
         require(parts <= most, "part", expected)?;
         self.distances -= parts * voxels;
+        Ok(())
+    }
+
+    /// Takes the work of decoding a picture, before its pixels are allocated.
+    pub(super) fn take_picture(&mut self, pixels: usize) -> Result<(), FieldError> {
+        let expected =
+            "expected fewer or smaller pictures in the scene: decoding them takes too long";
+        require(pixels <= self.colour_comparisons, "file", expected)?;
+        self.colour_comparisons -= pixels;
         Ok(())
     }
 

@@ -57,6 +57,7 @@ impl BodyText {
         let across = self.n.unwrap_or(MAX_EXTENT);
         check_across(across)?;
         let colours = colours(self)?;
+        budget.take_picture(Picture::pixels_of(&bytes))?;
         let picture = Picture::decode(file, &bytes).map_err(FieldError::file)?;
         budget.take_pixels(picture.size().iter().product(), colours.named.len())?;
         let fill = self.fill.take().unwrap_or(true);
@@ -67,13 +68,14 @@ impl BodyText {
             let grid = picture.grid(across, 1.0, &colours).ok();
             let pieces = grid.and_then(|grid| NoteKind::of_pieces(&grid));
             let pieces = pieces.map(|kind| ImportNote::new(file, kind));
-            return Ok(pieces.into_iter().collect());
+            return Ok(picture.frames_note().into_iter().chain(pieces).collect());
         }
         let (grid, notes) = if is_plain {
             let grid = picture.grid(across, 1.0, &colours);
             let grid = grid.map_err(FieldError::file)?;
             let pieces = NoteKind::of_pieces(&grid).map(|kind| ImportNote::new(file, kind));
-            (grid, pieces.into_iter().collect())
+            let notes = picture.frames_note().into_iter().chain(pieces).collect();
+            (grid, notes)
         } else {
             let options = PictureOptions {
                 across,
