@@ -57,6 +57,9 @@ pub enum Problem {
     /// The shape has no solid voxel. The text names what would be solid.
     #[error("the shape is empty: there is no {0}")]
     Empty(&'static str),
+    /// The shape has solid pixels, but no solid voxel.
+    #[error("the shape is empty: solid pixels cover less than half of every voxel")]
+    TooThin,
     /// The engine rejects the grid.
     #[error("{0}")]
     Grid(Box<Error>),
