@@ -57,7 +57,7 @@ fn picture_is_decoded_by_content_whatever_its_name() {
     }
 }
 
-/// Adds an EXIF segment with an orientation behind the first marker of a JPEG file.
+/// Adds an EXIF segment with an orientation after the first marker of a JPEG file.
 fn with_orientation(jpeg: &[u8], orientation: u8) -> Vec<u8> {
     let exif = [
         &b"\xff\xe1\0\x22Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0"[..],

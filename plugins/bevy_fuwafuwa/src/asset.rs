@@ -90,8 +90,8 @@ impl From<ImportError> for VoxelsError {
 }
 
 /// Reads PNG, JPEG, WebP, GIF and BMP files as [`Voxels<Dim2>`]. If the picture has transparency, opaque pixels
-/// are solid; otherwise it is a drawing, whose closed outlines are filled. The empty margin is trimmed. Bevy's own
-/// loader still reads these files as images, because the requested asset type selects the loader.
+/// are solid; otherwise, or if they are thin lines, it is a drawing, whose closed outlines are filled. The empty
+/// margin is trimmed. Bevy's own loader still reads these files as images, because the requested asset type selects the loader.
 #[derive(Copy, Clone, Debug, Default, TypePath)]
 pub struct SilhouetteLoader;
 

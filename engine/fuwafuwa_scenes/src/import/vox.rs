@@ -127,7 +127,8 @@ impl Model {
         let none = Problem::Empty("solid voxel in the grid");
         let solid = whole.trimmed().ok_or((FilePosition::File, none));
         let solid = solid.and_then(|solid| {
-            check_size(solid.size.map(|extent| extent as u64))?;
+            let [width, height, depth] = solid.size.map(|extent| extent as u64);
+            check_size([width, depth, height])?;
             Ok(solid)
         });
         let mut palette = [[0; 3]; 256];
@@ -188,7 +189,7 @@ impl Model {
     }
 
     /// Converts the model to voxels like [`Model::grid`], with its notes. A further note tells if the solid
-    /// voxels do not hang together.
+    /// voxels are not connected.
     ///
     /// # Errors
     /// Same errors as [`Model::grid`].
@@ -255,7 +256,7 @@ impl Model {
                 (Some(_), _) => "solid voxel in this part of the file",
                 (None, 0) => "solid voxel in the models of the file",
                 (None, _) => {
-                    "solid voxel in the visible models of the file; others are hidden or not in its scene"
+                    "solid voxel in the visible models of the file; others are hidden or not placed in MagicaVoxel's world"
                 }
             };
             return Err((FilePosition::File, Problem::Empty(what)));

@@ -44,17 +44,23 @@ impl Budget {
 
     /// Checks that the voxels of a model are within the limit of the scene.
     pub(super) fn check_model(&self, size: [i32; 3]) -> Result<(), FieldError> {
-        let [x, y, z] = size;
+        // On the axes of MagicaVoxel, as its user sees them.
+        let [x, z, y] = size;
         let count = size
             .into_iter()
             .map(|extent| extent as usize)
             .product::<usize>();
         let (most, found) = (self.most_voxels, self.voxels.saturating_add(count));
         let share = most.saturating_sub(self.voxels) as f64 / count as f64;
+        let advice = match (100.0 * share.cbrt()) as usize {
+            0 => "remove another body".into(),
+            percent => format!(
+                "make the model smaller, to {percent} % of its width, or use a part of it with model = \"name\""
+            ),
+        };
         let expected = format!(
             "expected {most} voxels at most in the grids of all bodies together, found {found}, of which \
-             {x} x {y} x {z} in this model; make the model smaller, to {:.0} % of its width, or use a part of it",
-            (100.0 * share.cbrt()).floor()
+             {x} x {y} x {z} in this model; {advice}"
         );
         require(found <= most, "file", expected)
     }
@@ -124,5 +130,16 @@ mod tests {
         assert!(budget.take_pixels(1 << 24, 0).is_err());
         assert!(budget.take_distances(0, usize::MAX).is_ok());
         assert!(budget.take_voxels(usize::MAX).is_err());
+    }
+
+    #[test]
+    fn model_that_other_bodies_leave_no_room_for_asks_to_remove_one() {
+        let mut budget = Budget::of_scene(1000);
+        budget.take_voxels(1000).unwrap();
+        let error = format!("{:?}", budget.check_model([4, 2, 3]).unwrap_err());
+        assert!(
+            error.contains("4 x 3 x 2 in this model; remove another body"),
+            "{error}"
+        );
     }
 }
