@@ -56,6 +56,9 @@ fn without_surroundings(ink: &Mask) -> (Mask, usize) {
     let is_along_edge = |component: &Component| {
         component.at_edge as f64 > SURROUNDING * 2.0 * (width + height) as f64
     };
+    if !components.list.iter().any(is_along_edge) {
+        return (ink.clone(), 0);
+    }
     let is_drawing = |component: &Component| {
         let [columns, rows] = &component.extent;
         let share = (columns.len() * rows.len()) as f64 / (width * height) as f64;
