@@ -97,7 +97,7 @@ impl Header {
             size,
             number,
             is_big_endian: bytes.is_big_endian,
-            offset: offset(&bytes)?,
+            offset: offset(&bytes, &mut notes)?,
             scale: scale(&bytes)?,
             placement: placement(&bytes, &mut notes)?,
             notes,
@@ -141,6 +141,11 @@ impl NumberFormat {
             Self::U64 => u64::from_le_bytes(word) as f64,
             Self::F64 => f64::from_le_bytes(word),
         }
+    }
+
+    /// Returns whether numbers of this format can be integers that single precision does not hold exactly.
+    pub fn may_be_inexact(self) -> bool {
+        matches!(self, Self::I32 | Self::U32 | Self::I64 | Self::U64)
     }
 
     /// Returns an integer of 32 or 64 bits that single precision does not hold exactly. `None` for other
@@ -312,15 +317,29 @@ fn number(bytes: &Bytes, notes: &mut Vec<String>) -> Result<NumberFormat, Positi
     Ok(number)
 }
 
-/// Returns the offset of the first voxel. In a single file, four bytes always stand between the header and the
-/// first voxel: they tell whether header extensions follow.
-fn offset(bytes: &Bytes) -> Result<usize, PositionedProblem> {
+/// Returns the offset of the first voxel. In a single file, four bytes stand between the header and the first
+/// voxel: they tell whether header extensions follow. Some programs leave out these bytes, and others write an
+/// offset of 0 in place of the least one; both are taken with a note.
+fn offset(bytes: &Bytes, notes: &mut Vec<String>) -> Result<usize, PositionedProblem> {
     let found = bytes.number(&VOX_OFFSET, 0);
     let header = bytes.bytes.len();
-    let least = (header + EXTENDER) as f64;
+    let usual = header + EXTENDER;
+    if found == 0.0 {
+        notes.push(format!(
+            "vox_offset: expected {usual} or more, found 0; {usual} was used"
+        ));
+        return Ok(usual);
+    }
+    if found == header as f64 {
+        notes.push(format!(
+            "vox_offset: expected {usual} or more, found {header}; the voxels were read right after the header"
+        ));
+        return Ok(header);
+    }
+    let least = usual as f64;
     if found < least {
         let expected = format!(
-            "voxels behind the header of {header} bytes and its {EXTENDER} bytes for extensions, at byte {least} or later"
+            "voxels after the header of {header} bytes and its {EXTENDER} bytes for extensions, at byte {least} or later"
         );
         return Err(bytes.wrong(&VOX_OFFSET, 0, &expected));
     }

@@ -22,12 +22,27 @@ pub fn warnings(scans: &[(&str, &Scan)], segmentation: &Segmentation) -> Vec<Str
             warn("the scan has no orientation: left and right may be swapped");
         }
     }
-    if let [(name, scan)] = scans
-        && let Some(text) = lost_labels(scan, segmentation)
-    {
-        warnings.push(format!("{name}: {text}"));
+    for (index, (name, scan)) in scans.iter().enumerate() {
+        let text = match (scans, segmentation) {
+            ([_], _) => lost_labels(scan, segmentation),
+            (_, Segmentation::Maps) => labels_as_map(scan, index + 1),
+            _ => None,
+        };
+        warnings.extend(text.map(|text| format!("{name}: {text}")));
     }
     warnings
+}
+
+/// Returns the warning about labels in one of several maps, that of `material`.
+fn labels_as_map(scan: &Scan, material: usize) -> Option<String> {
+    let labels: Vec<i32> = labels_of(scan)?.into_iter().collect();
+    (labels.len() > 1).then(|| {
+        format!(
+            "the values look like labels ({}), but were read as probabilities of material {material}; to choose a \
+             material for each label, import this scan alone with --label",
+            list(&labels)
+        )
+    })
 }
 
 fn lost_labels(scan: &Scan, segmentation: &Segmentation) -> Option<String> {

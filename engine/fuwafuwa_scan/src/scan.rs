@@ -121,7 +121,7 @@ fn try_decode(bytes: &[u8], mut progress: impl FnMut(f32)) -> Result<Scan, Posit
     let ignored = stream.finish()?;
     if ignored > 0 {
         notes.push(format!(
-            "{ignored} bytes behind the gzip data are not gzip data, and were ignored"
+            "{ignored} bytes after the gzip data are not gzip data, and were ignored"
         ));
     }
 
@@ -200,6 +200,9 @@ fn read(
 /// The first such integer of 64 bits. Integers of that length are labels, so that a rounded one is another
 /// label.
 fn check_integers(header: &Header, bytes: &[u8], first: usize) -> Result<usize, PositionedProblem> {
+    if !header.number.may_be_inexact() {
+        return Ok(0);
+    }
     let mut rounded = 0;
     let width = header.number.bytes();
     for (index, number) in bytes.chunks_exact(width).enumerate() {

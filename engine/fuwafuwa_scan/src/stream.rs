@@ -32,12 +32,12 @@ enum Source<'a> {
     Zipped(Members<'a>),
 }
 
-/// Members of a gzip file, which are decompressed one after the other. Zeros between and behind members are
+/// Members of a gzip file, which are decompressed one after the other. Zeros between and after members are
 /// padding, as for `gunzip`.
 struct Members<'a> {
     /// Decoder of the current member; `None` after the last member.
     decoder: Option<Box<GzDecoder<&'a [u8]>>>,
-    /// Number of bytes behind the last member, from the first byte on that is not zero.
+    /// Number of bytes after the last member, from the first byte on that is not zero.
     ignored: usize,
 }
 
@@ -61,7 +61,7 @@ impl<'a> Members<'a> {
         Ok(0)
     }
 
-    /// Starts the next member, if `rest`, the bytes behind the last one, contains a member.
+    /// Starts the next member, if `rest`, the bytes after the last one, contains a member.
     fn go_on(&mut self, rest: &'a [u8]) {
         let padding = rest.iter().take_while(|&&byte| byte == 0).count();
         let rest = &rest[padding..];
@@ -135,7 +135,7 @@ impl<'a> Stream<'a> {
     }
 
     /// Reads the remaining bytes, at most `MAX_TRAILING`. At the end of its data, a gzip stream verifies
-    /// its checksum. Returns the number of bytes behind the gzip data that are not padding.
+    /// its checksum. Returns the number of bytes after the gzip data that are not padding.
     pub fn finish(mut self) -> Result<usize, PositionedProblem> {
         let mut buffer = [0; 1 << 12];
         let mut trailing = 0;
@@ -143,7 +143,7 @@ impl<'a> Stream<'a> {
             let filled = self.fill(&mut buffer)?;
             trailing += filled as u64;
             if trailing > MAX_TRAILING {
-                let what = "bytes behind the last voxel";
+                let what = "bytes after the last voxel";
                 return Err(too_large(FilePosition::File, what, trailing, MAX_TRAILING));
             }
             if filled < buffer.len() {

@@ -93,11 +93,13 @@ fn error_names_field_expectation_and_value() {
         (with(70, &whole(128)), "datatype at byte 70"),
         (
             with(108, &real(350.0)),
-            "vox_offset at byte 108: expected voxels behind the header of 348 bytes and its 4 bytes for extensions, at byte \
+            "vox_offset at byte 108: expected voxels after the header of 348 bytes and its 4 bytes for extensions, at byte \
              352 or later, found 350",
         ),
-        (with(108, &real(348.0)), "at byte 352 or later, found 348"),
-        (with(108, &real(0.0)), "at byte 352 or later, found 0"),
+        (with(108, &real(349.0)), "at byte 352 or later, found 349"),
+        (with(108, &real(351.0)), "at byte 352 or later, found 351"),
+        (with(108, &real(347.0)), "at byte 352 or later, found 347"),
+        (with(108, &real(1.0)), "at byte 352 or later, found 1"),
         (with(108, &real(352.5)), "vox_offset"),
         (with(108, &real(f32::NAN)), "vox_offset"),
         (with(108, &real(-1e30)), "vox_offset"),
@@ -188,6 +190,36 @@ fn datatype_decides_over_bitpix() {
 }
 
 #[test]
+fn offset_without_extension_bytes_is_read_with_a_note() {
+    // The voxels are 0, 1, … 59 in 16 bits. From byte 348 on, the four bytes for extensions count as two zeros.
+    for (offset, range, expected) in [
+        (
+            0.0_f32,
+            [0.0, 59.0],
+            "vox_offset: expected 352 or more, found 0; 352 was used",
+        ),
+        (
+            348.0,
+            [0.0, 57.0],
+            "vox_offset: expected 352 or more, found 348; the voxels were read right after the header",
+        ),
+    ] {
+        let scan = decode(&with(108, &offset.to_le_bytes())).unwrap();
+        assert_eq!(scan.range(), range);
+        assert_eq!(scan.notes(), [expected]);
+    }
+    let mut second = small(2).bytes();
+    for (offset, range) in [(0_i64, [0.0, 59.0]), (540, [0.0, 57.0])] {
+        second[168..176].copy_from_slice(&offset.to_le_bytes());
+        let scan = decode(&second).unwrap();
+        assert_eq!((scan.range(), scan.notes().len()), (range, 1));
+    }
+    second[168..176].copy_from_slice(&541_i64.to_le_bytes());
+    let found = error(&second).to_string();
+    assert!(found.contains("at byte 544 or later, found 541"), "{found}");
+}
+
+#[test]
 fn other_files_are_named() {
     let at = |offset: usize, text: &[u8]| [&vec![0; offset], text, &[0; 400]].concat();
     let lfs = b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12345\n";
@@ -230,7 +262,7 @@ fn padding_and_members_of_gzip_are_read() {
         let scan = decode(&[&zipped(&whole), noise].concat()).unwrap();
         assert_eq!(scan.range(), range);
         let count = noise.iter().skip_while(|byte| **byte == 0).count();
-        let start = format!("{count} bytes behind the gzip data");
+        let start = format!("{count} bytes after the gzip data");
         assert!(scan.notes()[0].starts_with(&start), "{:?}", scan.notes());
     }
     // The second member is cut short, so that voxels are missing.
@@ -289,6 +321,10 @@ fn labels_that_are_lost_are_told() {
     assert!(told(&labels, &Segmentation::thresholds(&[(1.0..=2.0, 1)])).is_empty());
     let mask = File::small([2, 1, 1], &[0.0, 255.0]).scan();
     assert!(told(&mask, &Segmentation::Maps).is_empty());
+    let both = warnings(&[("a.nii", &mask), ("b.nii", &labels)], &Segmentation::Maps);
+    assert_eq!(both.len(), 1, "{both:?}");
+    assert!(both[0].starts_with("b.nii: the values look like labels (1, 2, 3, 4, 7)"));
+    assert!(both[0].contains("material 2"), "{both:?}");
 }
 
 #[test]
@@ -332,7 +368,7 @@ fn decode_stops_at_limit_for_gzip_bomb() {
     bomb[end..].fill(0xaa);
     match error(&bomb).problem {
         Problem::TooLarge { what, limit, .. } => {
-            assert_eq!((what, limit), ("bytes behind the last voxel", 1 << 20));
+            assert_eq!((what, limit), ("bytes after the last voxel", 1 << 20));
         }
         other => panic!("{other}"),
     }

@@ -7,6 +7,9 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
+/// Number of bytes at the beginning of a file that is too long by which its type is recognised.
+const HEAD: usize = 4096;
+
 /// Reads a file of at most `most` bytes. Refuses folders, pipes and devices: reading a pipe can block
 /// forever, and some devices are endless.
 ///
@@ -14,15 +17,9 @@ use std::path::Path;
 /// [`ErrorKind::FileTooLarge`] for a longer file, [`ErrorKind::InvalidInput`] for a folder, a pipe or a
 /// device, and errors of the system.
 pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    if !path.metadata()?.is_file() {
-        let reason = "expected a file, found a folder, a pipe or a device";
-        return Err(io::Error::new(ErrorKind::InvalidInput, reason));
-    }
-    let mut bytes = Vec::new();
-    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    let bytes = read_beginning(path, most.saturating_add(1))?;
     if bytes.len() as u64 > most {
-        let reason = format!("expected at most {most} bytes, found more");
-        return Err(io::Error::new(ErrorKind::FileTooLarge, reason));
+        return Err(too_long(most));
     }
     Ok(bytes)
 }
@@ -33,14 +30,42 @@ pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// Same errors as [`read_bytes`], and [`ErrorKind::InvalidData`] if the file is no text in UTF-8. The error names
 /// the type of the file.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
-    // A file of another type is often longer than a text, but its length is not what is wrong with it.
-    let bytes = read_bytes(path, most.max(MAX_FILE_BYTES))?;
+    let mut bytes = read_beginning(path, most.saturating_add(1))?;
+    let is_too_long = bytes.len() as u64 > most;
+    if is_too_long {
+        // A file of another type is often longer than a text, but its length is not what is wrong with it.
+        bytes.truncate(HEAD);
+        bytes.truncate(end_of_characters(&bytes));
+    }
     let text = text_of(bytes).map_err(|reason| io::Error::new(ErrorKind::InvalidData, reason))?;
-    if text.len() as u64 > most {
-        let reason = format!("expected at most {most} bytes, found {}", text.len());
-        return Err(io::Error::new(ErrorKind::FileTooLarge, reason));
+    if is_too_long {
+        return Err(too_long(most));
     }
     Ok(text)
+}
+
+/// Reads at most `most` bytes from the beginning of a file.
+fn read_beginning(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    if !path.metadata()?.is_file() {
+        let reason = "expected a file, found a folder, a pipe or a device";
+        return Err(io::Error::new(ErrorKind::InvalidInput, reason));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn too_long(most: u64) -> io::Error {
+    let reason = format!("expected at most {most} bytes, found more");
+    io::Error::new(ErrorKind::FileTooLarge, reason)
+}
+
+/// Returns the end of the last complete character, if the bytes are the beginning of a text in UTF-8.
+fn end_of_characters(bytes: &[u8]) -> usize {
+    match std::str::from_utf8(bytes) {
+        Err(error) if error.error_len().is_none() => error.valid_up_to(),
+        _ => bytes.len(),
+    }
 }
 
 /// Returns the bytes of a file as a text, or the reason why they are none.
@@ -99,6 +124,27 @@ mod tests {
             assert_eq!(refused(bytes), expected);
         }
         assert_eq!(text_of(b"dim = 2".to_vec()).unwrap(), "dim = 2");
+    }
+
+    #[test]
+    fn text_over_limit_is_refused_with_this_limit() {
+        let name = format!("fuwafuwa-long-text-{}", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        // The limit of 4096 bytes for the type lies within a character of three bytes.
+        let text = "# ".to_owned() + &"ね".repeat(2000);
+        std::fs::write(&path, &text).unwrap();
+        assert_eq!(read_text(&path, 6002).unwrap(), text);
+        for most in [0, 3, 6001] {
+            let error = read_text(&path, most).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::FileTooLarge);
+            let expected = format!("expected at most {most} bytes, found more");
+            assert_eq!(error.to_string(), expected);
+        }
+        std::fs::write(&path, [&b"\xff\xd8\xff\xe0"[..], &[7; 6000]].concat()).unwrap();
+        let error = read_text(&path, 100).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::InvalidData);
+        assert!(error.to_string().contains("a JPEG picture"), "{error}");
+        std::fs::remove_file(path).unwrap();
     }
 
     #[test]

@@ -9,6 +9,7 @@ mod content;
 mod drawing;
 mod error;
 mod file;
+mod frames;
 mod mask;
 mod note;
 mod paper;
@@ -25,5 +26,5 @@ pub use self::error::{
 pub use self::file::MAX_FILE_BYTES;
 pub use self::note::{Import, ImportNote, NoteKind};
 pub(crate) use self::picture::png_of;
-pub use self::picture::{MAX_PIXELS, Picture, PictureOptions, picture};
+pub use self::picture::{MAX_AREA, MAX_PIXELS, Picture, PictureOptions, picture};
 pub use self::vox::{MAX_MODEL_VOXELS, MAX_VOXELS_ACROSS, Model, vox};

@@ -70,7 +70,7 @@
 //!
 //! [`Picture::import`](crate::import::Picture::import) and [`Model::grid`](crate::import::Model::grid) document
 //! how pictures and models become voxels. All visible models of a .vox file become one body; `model = "head"`
-//! takes only the part that is called so in MagicaVoxel. [`Scene::notes`] tells what was left out.
+//! takes only the part with this name in MagicaVoxel. [`Scene::notes`] tells what was left out.
 
 mod body;
 mod budget;

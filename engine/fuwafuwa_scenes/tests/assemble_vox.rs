@@ -311,7 +311,7 @@ fn all_hidden_models_leave_an_empty_shape() {
             shape(1, &[], &[0]),
         ],
     );
-    let expected = "test.vox: the shape is empty: there is no solid voxel in the visible models of the file; others are hidden or not in its scene";
+    let expected = "test.vox: the shape is empty: there is no solid voxel in the visible models of the file; others are hidden or not placed in MagicaVoxel's world";
     assert_eq!(refusal(&bytes), expected);
 }
 
@@ -331,7 +331,7 @@ fn named_part_is_taken_alone() {
     let none = Model::decode_part("test.vox", &plain, Some("head")).unwrap_err();
     assert_eq!(
         none.to_string(),
-        "test.vox: expected no name of a part: no part of the file has a name, found \"head\""
+        "test.vox: expected a named part (no part of the file has a name, so `model` cannot choose one), found \"head\""
     );
 }
 
@@ -415,7 +415,7 @@ fn models_without_a_place_in_the_scene_are_left_out() {
     assert_eq!(import(&bytes).unwrap().grid.size(), [1; 3]);
     assert_eq!(
         told(&bytes),
-        "test.vox: a model that is not in the file's scene is left out"
+        "test.vox: a model that is not placed in MagicaVoxel's world is left out"
     );
 }
 
@@ -454,7 +454,7 @@ fn note_counts_the_pieces_into_which_the_engine_divides_a_body() {
     let cubes = (0..16).filter(|k| (k % 4 + k / 4) % 2 == 0);
     let cubes = cubes.flat_map(|k| solid([3 * (k % 4), 3 * (k / 4), 0], [3; 3], 1));
     let bytes = vox_file::model([12, 12, 3], &cubes.collect::<Vec<_>>());
-    let expected = "test.vox: the shape falls into 8 pieces: some touch only along edges or at corners, which does not hold";
+    let expected = "test.vox: the shape falls into 8 pieces: some touch only at edges or corners, so they come apart";
     assert_eq!(told(&bytes), expected);
     let text = "dim = 3\n[[body]]\nfile = \"a.vox\"\n";
     let mut scene = Scene::read("toy.toml", text, &[]).unwrap();
@@ -476,7 +476,8 @@ fn box_around_the_solid_voxels_is_limited() {
     let long = import(&dots(&["-1000 0 0", "23 0 0"])).unwrap();
     assert_eq!(long.grid.size(), [1024, 1, 1]);
     let expected = "test.vox: expected at most 1024 voxels on an axis and 16777216 in all in the box around the solid voxels, found ";
-    let advice = "times too wide: scale the model down or choose a part of it)";
+    let advice =
+        "times too wide: scale the model down or choose a part of it with model = \"name\")";
     for (places, found) in [
         (["-1000 0 0", "1000 0 0"], "2001 x 1 x 1 = 2001 (2.0 "),
         (
@@ -504,7 +505,7 @@ fn scene_names_its_limit_and_the_size_of_the_model() {
     scene.embed_files(&|_| Ok(bytes.clone())).unwrap();
     assert!(scene.build_within::<Dim3>(1000).is_ok());
     let error = scene.build_within::<Dim3>(512).unwrap_err().to_string();
-    let expected = "expected 512 voxels at most in the grids of all bodies together, found 1000, of which 20 x 5 x 10 in this model; make the model smaller, to 80 % of its width, or use a part of it";
+    let expected = "expected 512 voxels at most in the grids of all bodies together, found 1000, of which 20 x 10 x 5 in this model; make the model smaller, to 80 % of its width, or use a part of it with model = \"name\"";
     assert!(error.ends_with(expected), "{error}");
 }
 
@@ -571,7 +572,7 @@ fn damaged_scene_names_the_node() {
 #[test]
 fn hostile_scene_is_refused_quickly() {
     let one = model_chunks([1; 3], &[[0, 0, 0, 1]]);
-    let limit = "test.vox: expected at most 262144 nodes on all paths from the root, found more (join models before you save the file, or choose a smaller scene)";
+    let limit = "test.vox: expected at most 131072 objects and groups, copies included, found more (merge objects before saving)";
     // 2^40 paths lead through 40 groups that each contain the next one twice.
     let doubled = (0..40).map(|id| group(id, &[], &[id + 1, id + 1]));
     let doubled: Vec<_> = doubled.chain([shape(40, &[], &[0]), one.clone()]).collect();
@@ -595,7 +596,7 @@ fn hostile_scene_is_refused_quickly() {
     // A full model, placed so often that only its voxels are too many.
     let full = model_chunks([64; 3], &solid([0; 3], [64; 3], 1));
     let often = group(0, &[], &[1; 65]);
-    let expected = "test.vox: expected at most 16777216 voxels in all visible models together, found 17039360 (choose a part of the scene)";
+    let expected = "test.vox: expected at most 16777216 voxels in all visible models together, found 17039360 (choose a part of the scene with model = \"name\")";
     assert_eq!(
         refusal(&file(200, &[full, often, shape(1, &[], &[0])])),
         expected

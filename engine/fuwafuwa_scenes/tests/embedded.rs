@@ -4,6 +4,8 @@
 #[allow(dead_code)]
 mod damage;
 mod picture;
+#[allow(dead_code)]
+mod vox_file;
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
@@ -11,6 +13,7 @@ use damage::Noise;
 use fuwafuwa::{Dim, Dim2, Dim3};
 use fuwafuwa_scenes::Scene;
 use picture::png_of;
+use vox_file::{file, group, model_chunks, shape, transform};
 
 /// Encodes a picture of random red, green, blue and alpha.
 fn noisy_picture(width: u32, height: u32, is_opaque: bool) -> Vec<u8> {
@@ -125,4 +128,74 @@ fn embed_strips_unknown_chunks_from_model() {
     let small = noisy_picture(20, 20, false);
     let length = check::<Dim2>("e.png", &small, "n = 5\n");
     assert_eq!(length, small.len().div_ceil(3) * 4);
+}
+
+/// Returns the scene of a body made from a file, with the file embedded.
+fn embedded(dim: usize, name: &str, bytes: &[u8], fields: &str) -> Scene {
+    let text = format!("dim = {dim}\n[[material]]\n[[body]]\nfile = {name:?}\n{fields}");
+    let mut scene = Scene::read("toy.toml", &text, &[]).unwrap();
+    scene.embed_files(&|_| Ok(bytes.to_vec())).unwrap();
+    scene
+}
+
+#[test]
+fn plain_picture_tells_of_pieces() {
+    // Two solid pixels that touch only at a corner, and the same in blocks of 200 × 200 noisy pixels, which are
+    // too many to be embedded whole.
+    let corner = [[0, 0, 0, 255], [0; 4], [0; 4], [0, 0, 0, 255]];
+    let small = png_of(2, 2, corner.as_flattened());
+    let mut noise = Noise(3);
+    let pixel = |at: u32| {
+        let is_solid = (at % 400 < 200) == (at / 400 < 200);
+        let [red, green, blue] = [0; 3].map(|_| noise.below(256) as u8);
+        [red, green, blue, if is_solid { 255 } else { 0 }]
+    };
+    let pixels: Vec<[u8; 4]> = (0..400 * 400).map(pixel).collect();
+    let large = png_of(400, 400, pixels.as_flattened());
+    assert!(large.len() > 1 << 16);
+    for bytes in [small, large] {
+        let scene = embedded(2, "a.png", &bytes, "n = 2\nplain = true\n");
+        let [note] = scene.notes() else {
+            panic!("{:?}", scene.notes());
+        };
+        let text = note.to_string();
+        assert!(
+            text.starts_with("a.png: the shape falls into 2 pieces"),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn several_models_are_embedded_as_one() {
+    let model = |index: u8| model_chunks([1; 3], &[[0, 0, 0, index]]);
+    let one = file(150, &[model(1)]);
+    let scene = embedded(3, "a.vox", &one, "");
+    assert_eq!(scene.body[0].content, Some(BASE64.encode(&one)));
+
+    let nodes = |models: &[i32]| {
+        let at = [("_t", "1 0 0")];
+        let frames: [&[(&str, &str)]; 2] = [&[], &at];
+        let ids = (2..).step_by(2);
+        let mut nodes = transform(0, 1, -1, &[], &[&[]]);
+        let children: Vec<i32> = ids.clone().take(models.len()).collect();
+        nodes.extend(group(1, &[], &children));
+        for ((id, &model), frame) in ids.zip(models).zip(frames) {
+            nodes.extend(transform(id, id + 1, -1, &[], &[frame]));
+            nodes.extend(shape(id + 1, &[], &[model]));
+        }
+        nodes
+    };
+    for bytes in [
+        file(200, &[model(1), nodes(&[0])]),
+        file(200, &[model(1), model(1), nodes(&[0, 1])]),
+        file(150, &[model(1), model(1)]),
+    ] {
+        let scene = embedded(3, "a.vox", &bytes, "");
+        let content = scene.body[0].content.as_ref().unwrap();
+        let content = BASE64.decode(content).unwrap();
+        let has = |name: &[u8]| content.windows(4).filter(|found| *found == name).count();
+        assert_eq!([has(b"XYZI"), has(b"nTRN")], [1, 0]);
+        assert_ne!(content, bytes);
+    }
 }

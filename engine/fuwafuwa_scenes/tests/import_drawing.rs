@@ -85,11 +85,18 @@ impl Sheet {
     }
 
     fn png(&self) -> Vec<u8> {
-        let samples = self
-            .pixels
-            .iter()
-            .flat_map(|&[red, green, blue]| [red as u8, green as u8, blue as u8, 255]);
-        let samples: Vec<u8> = samples.collect();
+        self.clear_png(|_, _| false)
+    }
+
+    /// Encodes the sheet with those pixels transparent whose centres `is_clear` accepts.
+    fn clear_png(&self, is_clear: impl Fn(f64, f64) -> bool) -> Vec<u8> {
+        let mut samples = Vec::new();
+        for (at, &[red, green, blue]) in self.pixels.iter().enumerate() {
+            let (column, row) = (at % self.size[0], at / self.size[0]);
+            let is_clear = is_clear(column as f64 + 0.5, row as f64 + 0.5);
+            let alpha = if is_clear { 0 } else { 255 };
+            samples.extend([red as u8, green as u8, blue as u8, alpha]);
+        }
         png_of(self.size[0] as u32, self.size[1] as u32, &samples)
     }
 
@@ -352,4 +359,90 @@ fn scene_embeds_voxels_of_drawing_and_keeps_them() {
         refused(deep, b"version https://git-lfs.github.com/spec/v1\n"),
         "toy.toml, line 3: body 1, file: a.vox: expected a MagicaVoxel model for dim = 3, found a Git LFS pointer, not the file itself (run git lfs pull)"
     );
+}
+
+#[test]
+fn outline_at_edge_of_cropped_picture_is_kept() {
+    let mut sheet = Sheet::new([400, 400], WHITE);
+    sheet.paint(BLACK, |x, y| {
+        let edge = x.min(y).min(400.0 - x).min(400.0 - y);
+        edge < 10.0
+    });
+    sheet.disc(BLACK, [130.0, 130.0], 20.0);
+    sheet.disc(BLACK, [270.0, 130.0], 20.0);
+    sheet.line(BLACK, [100.0, 240.0], [300.0, 310.0], 10.0);
+    let body = sheet.import(60, true);
+    assert_eq!(body.grid.size(), [60, 60, 1]);
+    assert!(count(&body.grid) > 0.98 * 3600.0, "{}", count(&body.grid));
+    assert_eq!(body.notes, []);
+}
+
+#[test]
+fn diagonal_line_of_pixels_is_one_piece() {
+    for is_falling in [false, true] {
+        let mut sheet = Sheet::new([40, 40], WHITE);
+        sheet.paint(BLACK, |x, y| {
+            let across = if is_falling { y } else { 40.0 - y };
+            (x - across).abs() < 0.5
+        });
+        let body = sheet.import(64, true);
+        assert_eq!(body.notes, []);
+        assert_eq!(body.grid.size(), [40, 40, 1]);
+        // A line of n pixels needs a pixel at each of its n - 1 corners.
+        assert_eq!(count(&body.grid), 79.0);
+    }
+}
+
+fn import(bytes: &[u8], across: usize) -> Import<Dim2> {
+    let options = PictureOptions {
+        across,
+        ..PictureOptions::default()
+    };
+    let picture = Picture::decode("test.png", bytes).unwrap();
+    picture.import(&options).unwrap()
+}
+
+#[test]
+fn lines_on_transparent_ground_are_a_drawing() {
+    let from_middle = |x: f64, y: f64| (x - 400.0).hypot(y - 400.0);
+    let sheet = Sheet::new([800, 800], BLACK);
+    // A circle with a pen of 12 pixels and an eye is filled.
+    let lines = sheet.clear_png(|x, y| {
+        (from_middle(x, y) - 300.0).abs() > 6.0 && (x - 330.0).hypot(y - 350.0) > 20.0
+    });
+    let drawn = import(&lines, 60);
+    assert!((count(&drawn.grid) / disc(60.0) - 1.0).abs() < 0.02);
+    assert_eq!(drawn.notes, []);
+    // A ring with a width of 100 pixels is a sprite and keeps its hole.
+    let ring = sheet.clear_png(|x, y| (from_middle(x, y) - 250.0).abs() > 50.0);
+    let ring = import(&ring, 60);
+    let expected = disc(60.0) - disc(40.0);
+    assert!((count(&ring.grid) / expected - 1.0).abs() < 0.03);
+}
+
+#[test]
+fn paper_with_transparent_corners_is_paper() {
+    let mut sheet = Sheet::new([600, 800], WHITE);
+    sheet.circle(BLACK, [300.0, 400.0], 200.0, 8.0, 0.0);
+    let opaque = sheet.import(50, true);
+    let is_outside_corner = |x: f64, y: f64| {
+        let [x, y] = [(x - 300.0).abs() - 240.0, (y - 400.0).abs() - 340.0];
+        x > 0.0 && y > 0.0 && x.hypot(y) > 60.0
+    };
+    let rounded = import(&sheet.clear_png(is_outside_corner), 50);
+    let stray = import(&sheet.clear_png(|x, y| x == 300.5 && y == 100.5), 50);
+    for body in [rounded, stray] {
+        assert_eq!(materials(&body.grid), materials(&opaque.grid));
+        assert_eq!(body.notes, []);
+    }
+    // A sprite in strong colours has rounded corners, too.
+    let mut sheet = Sheet::new([600, 600], [0.0, 160.0, 60.0]);
+    sheet.disc(BLACK, [200.0, 250.0], 40.0);
+    let is_outside_corner = |x: f64, y: f64| {
+        let [x, y] = [(x - 300.0).abs() - 240.0, (y - 300.0).abs() - 240.0];
+        x > 0.0 && y > 0.0 && x.hypot(y) > 60.0
+    };
+    let sprite = import(&sheet.clear_png(is_outside_corner), 50);
+    assert_eq!(sprite.grid.size(), [50, 50, 1]);
+    assert!(count(&sprite.grid) > 0.98 * 2500.0);
 }

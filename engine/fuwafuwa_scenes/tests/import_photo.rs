@@ -5,7 +5,8 @@ mod damage;
 use damage::Noise;
 use fuwafuwa::Dim2;
 use fuwafuwa_scenes::import::{ImportError, Picture, PictureOptions, Problem, picture};
-use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
+use image::codecs::gif::GifEncoder;
+use image::{DynamicImage, Frame, ImageFormat, Rgb, RgbImage, RgbaImage};
 use std::io::Cursor;
 
 /// Red L of 64 × 96 pixels in a white picture of 80 × 128: an upright bar and a foot to the right, both 32 pixels
@@ -56,7 +57,7 @@ fn picture_is_decoded_by_content_whatever_its_name() {
     }
 }
 
-/// Adds an EXIF segment with an orientation behind the first marker of a JPEG file.
+/// Adds an EXIF segment with an orientation after the first marker of a JPEG file.
 fn with_orientation(jpeg: &[u8], orientation: u8) -> Vec<u8> {
     let exif = [
         &b"\xff\xe1\0\x22Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0"[..],
@@ -99,6 +100,66 @@ fn decode_refuses_size_from_header_before_it_allocates() {
         };
         assert_eq!((found, limit), (expected, 8192));
     }
+}
+
+#[test]
+fn decode_refuses_size_that_file_is_too_short_for() {
+    let mut bmp = encoded(ImageFormat::Bmp);
+    bmp[18..22].copy_from_slice(&8000u32.to_le_bytes());
+    bmp[22..26].copy_from_slice(&8000u32.to_le_bytes());
+    let mut gif = encoded(ImageFormat::Gif);
+    let side = 6000u16.to_le_bytes();
+    gif[6..10].copy_from_slice(&[side, side].concat());
+    for (bytes, expected) in [
+        (bmp, "expected at least 500000 bytes for 8000 x 8000 pixels"),
+        (gif, "expected at least 13187 bytes for 6000 x 6000 pixels"),
+    ] {
+        let error = Picture::decode("test.pic", &bytes).unwrap_err().to_string();
+        let found = format!("test.pic: {expected}, found {}", bytes.len());
+        assert_eq!(error, found);
+    }
+    let mut bmp = encoded(ImageFormat::Bmp);
+    bmp[18..22].copy_from_slice(&8192u32.to_le_bytes());
+    bmp[22..26].copy_from_slice(&8192u32.to_le_bytes());
+    let error = Picture::decode("test.bmp", &bmp).unwrap_err().to_string();
+    let expected = "test.bmp: 67108864 pixels are too many, the limit is 50331648; scale the picture down to 86 %";
+    assert_eq!(error, expected);
+}
+
+#[test]
+fn animation_gives_its_first_frame_with_a_note() {
+    let mut gif = Vec::new();
+    let mut encoder = GifEncoder::new(&mut gif);
+    for side in [20, 10, 5] {
+        let is_solid = |x: u32, y: u32| x < side && y < side;
+        let pixel = |x, y| {
+            image::Rgba(if is_solid(x, y) {
+                [0, 0, 0, 255]
+            } else {
+                [255; 4]
+            })
+        };
+        let frame = Frame::new(RgbaImage::from_fn(40, 40, pixel));
+        encoder.encode_frame(frame).unwrap();
+    }
+    drop(encoder);
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, 4, 1);
+    encoder.set_animated(3, 0).unwrap();
+    let mut writer = encoder.write_header().unwrap();
+    for row in [[0, 255, 255, 255], [255, 0, 0, 255], [255; 4]] {
+        writer.write_image_data(&row).unwrap();
+    }
+    writer.finish().unwrap();
+    for (bytes, width) in [(gif, 20), (png, 1)] {
+        let import = picture("test.gif", &bytes, 64, 0.5).unwrap();
+        assert_eq!(import.grid.size(), [width, width, 1]);
+        let notes: Vec<_> = import.notes.iter().map(ToString::to_string).collect();
+        let expected = "test.gif: only the first frame is taken; 2 more frames are left out";
+        assert_eq!(notes, [expected]);
+    }
+    let import = picture("test.gif", &encoded(ImageFormat::Gif), 6, 0.5).unwrap();
+    assert_eq!(import.notes, []);
 }
 
 #[test]

@@ -228,7 +228,14 @@ fn grid_rejects_palette_indices_for_picture() {
 fn error_names_missing_pixels_for_empty_picture() {
     assert_eq!(
         complaint(&drawing(&["..", ".."])),
-        "test.png: the shape is empty: there is no pixel with a red, green or blue below 128, or none covers half of a voxel"
+        "test.png: the shape is empty: there is no pixel with a red, green or blue below 128"
+    );
+    // One of the four pixels of a voxel is black.
+    let mut thin = ["................"; 16];
+    thin[4] = "......#.........";
+    assert_eq!(
+        complaint(&drawing(&thin)),
+        "test.png: the shape is empty: solid pixels cover less than half of every voxel"
     );
     let clear = (ColorType::GrayscaleAlpha, BitDepth::Eight);
     let clear = complaint(&encode([1, 1], clear, &[0, 127], |_| {}));
@@ -255,7 +262,7 @@ fn decode_rejects_wrong_size_from_header() {
     }
     assert_eq!(
         complaint(&with_size(&one, [most + 1, 1])),
-        "test.png, chunk IHDR at byte 8: 8193 pixels on a side are too many, the limit is 8192"
+        "test.png, chunk IHDR at byte 8: 8193 pixels on a side are too many, the limit is 8192; scale the picture down to 99 %"
     );
     // The header states more pixels than a file of this length can contain at the best compression.
     assert_eq!(

@@ -33,7 +33,8 @@ pub struct Voxels<D: Dim> {
     /// Colours of the materials, number 1 first, as in [`crate::component::SoftColours`]. Empty for a
     /// picture.
     pub colours: Vec<[f32; 3]>,
-    /// Notes on what was left out of the file or may surprise, such as hidden models.
+    /// Notes on what was left out of the file or may surprise, such as hidden models. The loaders also write
+    /// them to the log as warnings.
     pub notes: Vec<ImportNote>,
 }
 
@@ -89,8 +90,8 @@ impl From<ImportError> for VoxelsError {
 }
 
 /// Reads PNG, JPEG, WebP, GIF and BMP files as [`Voxels<Dim2>`]. If the picture has transparency, opaque pixels
-/// are solid; otherwise it is a drawing, whose closed outlines are filled. The empty margin is trimmed. Bevy's own
-/// loader still reads these files as images, because the requested asset type selects the loader.
+/// are solid; otherwise, or if they are thin lines, it is a drawing, whose closed outlines are filled. The empty
+/// margin is trimmed. Bevy's own loader still reads these files as images, because the requested asset type selects the loader.
 #[derive(Copy, Clone, Debug, Default, TypePath)]
 pub struct SilhouetteLoader;
 
@@ -113,6 +114,7 @@ impl AssetLoader for SilhouetteLoader {
         let bytes = bytes_of(reader).await?;
         let file = context.path().to_string();
         let import = picture(&file, &bytes, settings.max_across, settings.voxel_size)?;
+        warn_of(&import.notes);
         Ok(Voxels {
             grid: import.grid,
             colours: Vec::new(),
@@ -140,6 +142,7 @@ impl AssetLoader for ModelLoader {
         let file = context.path().to_string();
         let model = Model::decode(&file, &bytes)?;
         let import = model.import(settings.voxel_size, &Colours::default())?;
+        warn_of(&import.notes);
         let colours = model.palette().iter();
         let colours = colours.map(|colour| colour.map(|part| f32::from(part) / 255.0));
         Ok(Voxels {
@@ -151,6 +154,13 @@ impl AssetLoader for ModelLoader {
 
     fn extensions(&self) -> &[&str] {
         &["vox"]
+    }
+}
+
+/// Writes notes to the log, where a developer sees them.
+fn warn_of(notes: &[ImportNote]) {
+    for note in notes {
+        tracing::warn!("{note}");
     }
 }
 

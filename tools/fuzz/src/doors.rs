@@ -61,7 +61,12 @@ pub fn png(bytes: &[u8]) -> bool {
         ..PictureOptions::default()
     };
     let drawn = picture.import(&options).map(|import| import.grid);
-    [plain, coloured, drawn]
+    let hollow = PictureOptions {
+        fill: false,
+        ..options
+    };
+    let hollow = picture.import(&hollow).map(|import| import.grid);
+    [plain, coloured, drawn, hollow]
         .into_iter()
         .flatten()
         .for_each(drop_in);

@@ -13,8 +13,9 @@ use fuwafuwa_scenes::{Recording, Scene, scene};
 use fuwafuwa_surgery::phantom;
 use fuwafuwa_surgery::procedure::{Input, Procedure};
 use fuwafuwa_surgery::tools::Tool;
+use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use png::{BitDepth, ColorType};
-use std::io::Write;
+use std::io::{Cursor, Write};
 use std::sync::Arc;
 use tamaire_play::level::{NAMED, NAMED_3D};
 use tamaire_play::{AnyRound, InputFrame, Level, Replay};
@@ -59,7 +60,14 @@ pub fn pictures() -> Vec<Vec<u8>> {
     let pictures = kinds
         .into_iter()
         .map(|(colour, depth)| picture(colour, depth));
-    pictures.chain([CAT.to_vec()]).collect()
+    let photos = [
+        ImageFormat::Jpeg,
+        ImageFormat::WebP,
+        ImageFormat::Gif,
+        ImageFormat::Bmp,
+    ];
+    let others = photos.into_iter().map(photo);
+    pictures.chain([CAT.to_vec()]).chain(others).collect()
 }
 
 pub fn models() -> Vec<Vec<u8>> {
@@ -284,6 +292,24 @@ fn picture(colour: ColorType, depth: BitDepth) -> Vec<u8> {
         .expect("writing to a vector cannot fail");
     writer.finish().expect("writing to a vector cannot fail");
     bytes
+}
+
+/// Returns a small picture in another format than PNG: a dark square on bright paper.
+fn photo(format: ImageFormat) -> Vec<u8> {
+    let is_dark = |x: u32, y: u32| (2..7).contains(&x) && (3..8).contains(&y);
+    let pixel = |x, y| {
+        Rgb(if is_dark(x, y) {
+            [40, 20, 90]
+        } else {
+            [250; 3]
+        })
+    };
+    let picture = DynamicImage::from(RgbImage::from_fn(12, 10, pixel));
+    let mut bytes = Cursor::new(Vec::new());
+    picture
+        .write_to(&mut bytes, format)
+        .expect("writing to a vector cannot fail");
+    bytes.into_inner()
 }
 
 /// Returns a MagicaVoxel model.

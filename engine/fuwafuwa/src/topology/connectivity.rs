@@ -3,7 +3,7 @@
 //! Voxels of one group share a node at the lattice point; a release splits a group, and so the node. A face
 //! between two voxels is *closed* if the voxels share a node at every corner of that face. After a release,
 //! voxels stay in one group only if closed faces connect them. Therefore cracks that meet join up, and no two
-//! parts of a body hang together by a single node ([`Connectivity::normalise`]).
+//! parts of a body are connected by a single node ([`Connectivity::normalise`]).
 //!
 //! ```text
 //!   a │ b        the crack came from below and ended at p: c and d are no longer closed, but

@@ -95,7 +95,7 @@ use FileType::*;
 const HEAD: usize = 4096;
 
 /// Byte offset, bytes there, and the type that they stand for.
-const SIGNATURES: [(usize, &[u8], FileType); 36] = [
+const SIGNATURES: [(usize, &[u8], FileType); 37] = [
     (0, b"\x89PNG", Png),
     (0, b"\xff\xd8\xff", Jpeg),
     (8, b"WEBP", WebP),
@@ -121,7 +121,8 @@ const SIGNATURES: [(usize, &[u8], FileType); 36] = [
     (0, b"\xfd7zXZ\0", Archive),
     (0, b"BZh", Archive),
     (0, b"\x28\xb5\x2f\xfd", Archive),
-    (257, b"ustar", Archive),
+    (257, b"ustar\0", Archive),
+    (257, b"ustar ", Archive),
     (0, b"%PDF-", Pdf),
     (
         0,
@@ -144,15 +145,18 @@ impl FileType {
         if bytes.is_empty() {
             return Empty;
         }
+        // A text may contain any letters after its beginning.
+        let is_binary = has_control(&bytes[..bytes.len().min(HEAD)]);
         let has = |(at, signature, _): &&(usize, &[u8], Self)| {
-            bytes
-                .get(*at..)
-                .is_some_and(|rest| rest.starts_with(signature))
+            let rest = bytes.get(*at..).filter(|_| *at == 0 || is_binary);
+            rest.is_some_and(|rest| rest.starts_with(signature))
         };
         if let Some((.., found)) = SIGNATURES.iter().find(has) {
             return *found;
         }
-        media_type(bytes)
+        is_binary
+            .then(|| media_type(bytes))
+            .flatten()
             .or_else(|| is_bmp(bytes).then_some(Bmp))
             .or_else(|| is_mgh(bytes).then_some(Mgh))
             .or_else(|| text_type(bytes))
@@ -222,7 +226,7 @@ impl fmt::Display for FileType {
     }
 }
 
-/// Returns the type of a file of the MP4 family, which has its brand behind `ftyp`.
+/// Returns the type of a file of the MP4 family, which has its brand after `ftyp`.
 fn media_type(bytes: &[u8]) -> Option<FileType> {
     let brand = bytes.get(4..12)?.strip_prefix(b"ftyp")?;
     Some(match brand {
@@ -268,9 +272,7 @@ fn text_type(bytes: &[u8]) -> Option<FileType> {
     if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") || is_utf16(head) {
         return Some(Utf16);
     }
-    // A control character other than a tab, a line break, a form feed or an escape is in no text.
-    let is_control = |byte: &u8| matches!(byte, 0..=8 | 11 | 14..=26 | 28..=31);
-    if head.iter().any(is_control) {
+    if has_control(head) {
         return None;
     }
     match std::str::from_utf8(bytes) {
@@ -279,6 +281,13 @@ fn text_type(bytes: &[u8]) -> Option<FileType> {
         // the missing control characters decide. A few bytes alone decide nothing.
         Err(_) => (head.len() >= 16).then_some(OtherText),
     }
+}
+
+/// Returns whether bytes contain a control character other than a tab, a line break, a form feed or an escape,
+/// which is in no text.
+fn has_control(bytes: &[u8]) -> bool {
+    let is_control = |byte: &u8| matches!(byte, 0..=8 | 11 | 14..=26 | 28..=31);
+    bytes.iter().any(is_control)
 }
 
 /// Returns whether every second byte of the first ones is zero, as in UTF-16 without a byte order mark.
@@ -353,6 +362,10 @@ mod tests {
     #[test]
     fn type_follows_from_content() {
         let at = |offset: usize, text: &[u8]| [&vec![0; offset], text, &[0; 8]].concat();
+        let text_with = |offset: usize, text: &str| {
+            let beginning = format!("dim = 2\n# {}", "m".repeat(offset - 10));
+            (beginning + text + "\n").into_bytes()
+        };
         let stl = [&[b' '; 80][..], &2u32.to_le_bytes(), &[7; 100]].concat();
         let mgh = [1i32, 256, 256, 256, 1, 3].map(i32::to_be_bytes).concat();
         let utf16 = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect();
@@ -391,6 +404,14 @@ mod tests {
             (b"\x1c\x02\0\0n+2\0\r\n\x1a\n".into(), Nifti2),
             (at(0, b"\x5c\x01\0\0"), Analyze),
             (at(128, b"DICM"), Dicom),
+            (at(257, b"ustar\0"), Archive),
+            (at(257, b"ustar  "), Archive),
+            (at(257, b"ustard"), Unknown),
+            (text_with(257, "ustard tastes good"), Toml),
+            (text_with(257, "ustar tastes good"), Toml),
+            (text_with(128, "DICM"), Toml),
+            (b"# a ftypheic\ndim = 2\n".into(), Toml),
+            (b"dim ftypheic".into(), Text),
             (b"NRRD0004\ntype: short\n".into(), Nrrd),
             (mgh, Mgh),
             (b"\n# A level.\ndim = 2\n".into(), Toml),

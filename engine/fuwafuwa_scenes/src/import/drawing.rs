@@ -16,6 +16,11 @@ const THICKENED: [(f64, f64); 2] = [(0.375, 0.8), (0.75, 0.4)];
 /// Share of the edge of a picture along which something lies that is not part of the drawing, such as a table
 /// below the paper.
 const SURROUNDING: f64 = 0.2;
+/// Minimum thickness of such surroundings, in widths of the pen of the drawing. What is thinner is an outline to
+/// which the picture was cropped.
+const THICK: f64 = 2.0;
+/// Maximum width of a pen, as a share of the longer side of a picture. Wider strokes are filled shapes.
+const WIDEST_PEN: f64 = 0.02;
 /// Minimum size of a drawing on such paper, as a share of the picture's area.
 const LEAST_DRAWING: f64 = 0.02;
 
@@ -48,13 +53,21 @@ pub(super) fn solid(ink: &Mask, across: usize, fill: bool) -> Solid {
 fn without_surroundings(ink: &Mask) -> (Mask, usize) {
     let components = ink.components();
     let [width, height] = ink.size;
-    let is_around = |component: &Component| {
+    let is_along_edge = |component: &Component| {
         component.at_edge as f64 > SURROUNDING * 2.0 * (width + height) as f64
     };
+    if !components.list.iter().any(is_along_edge) {
+        return (ink.clone(), 0);
+    }
     let is_drawing = |component: &Component| {
         let [columns, rows] = &component.extent;
         let share = (columns.len() * rows.len()) as f64 / (width * height) as f64;
-        !is_around(component) && share >= LEAST_DRAWING
+        !is_along_edge(component) && share >= LEAST_DRAWING
+    };
+    let pen = components.kept(ink.size, is_drawing).stroke_width();
+    let thick = THICK * pen.min(WIDEST_PEN * ink.longer() as f64);
+    let is_around = |component: &Component| {
+        is_along_edge(component) && component.area as f64 > thick * component.at_edge as f64
     };
     let around = components
         .list
@@ -100,14 +113,14 @@ fn without_specks(ink: &Mask, across: usize) -> (Mask, usize) {
 fn held(ink: Mask, across: usize, fill: bool) -> Mask {
     let voxel = ink.longer() as f64 / across as f64;
     let ink = ink.padded((2.0 * voxel) as usize + 1);
-    // Each pixel becomes a voxel, so no stroke is too thin.
+    // Each pixel becomes a voxel, so no stroke is too thin, but voxels hold together only along edges.
     let keeps_pixels = voxel <= 1.0;
     let solid = match fill {
         true => filled(&ink, if keeps_pixels { 0.0 } else { CLOSED * voxel }),
         false => ink,
     };
     if keeps_pixels {
-        return solid;
+        return solid.joined();
     }
     let thicker =
         |solid: Mask, (thin, by): (f64, f64)| thickened(solid, voxel, thin * voxel, by * voxel);

@@ -43,7 +43,7 @@ pub enum Problem {
         found: String,
     },
     /// A number exceeds its limit.
-    #[error("{found} {what} are too many, the limit is {limit}")]
+    #[error("{found} {what} are too many, the limit is {limit}{advice}")]
     TooLarge {
         /// Unit of the number, in the plural.
         what: &'static str,
@@ -51,10 +51,15 @@ pub enum Problem {
         found: u64,
         /// Largest accepted number.
         limit: u64,
+        /// What the user can do, after a semicolon; may be empty.
+        advice: String,
     },
     /// The shape has no solid voxel. The text names what would be solid.
     #[error("the shape is empty: there is no {0}")]
     Empty(&'static str),
+    /// The shape has solid pixels, but no solid voxel.
+    #[error("the shape is empty: solid pixels cover less than half of every voxel")]
+    TooThin,
     /// The engine rejects the grid.
     #[error("{0}")]
     Grid(Box<Error>),
@@ -91,7 +96,24 @@ pub fn too_large(
     found: u64,
     limit: u64,
 ) -> PositionedProblem {
-    (place, Problem::TooLarge { what, found, limit })
+    too_large_with(place, what, found, limit, String::new())
+}
+
+/// Returns the problem of a number above its limit, with advice after a semicolon.
+pub fn too_large_with(
+    place: FilePosition,
+    what: &'static str,
+    found: u64,
+    limit: u64,
+    advice: String,
+) -> PositionedProblem {
+    let problem = Problem::TooLarge {
+        what,
+        found,
+        limit,
+        advice,
+    };
+    (place, problem)
 }
 
 /// Adds the name of the file to a problem.

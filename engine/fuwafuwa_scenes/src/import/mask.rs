@@ -14,7 +14,7 @@ pub(super) struct Mask {
 /// Columns and rows.
 pub(super) type Extent = [Range<usize>; 2];
 
-/// Pixels that hang together along edges or at corners.
+/// Pixels that are connected along edges or at corners.
 #[derive(Clone, Debug)]
 pub(super) struct Component {
     /// Number of pixels.
@@ -163,7 +163,7 @@ impl Mask {
         self.inverted().dilated(radius).inverted()
     }
 
-    /// Returns the pixels that are off and hang together with the edge of the mask along edges of pixels.
+    /// Returns the pixels that are off and connected with the edge of the mask along edges of pixels.
     pub fn outside(&self) -> Self {
         let [width, height] = self.size;
         let mut outside = Self::from_fn(self.size, |_, _| false);
@@ -192,6 +192,46 @@ impl Mask {
             }
         }
         outside
+    }
+
+    /// Returns the mean width of what is on [pixels]: twice the area per length of the boundary. For strokes, this
+    /// is the width of the pen, or up to a fifth less if they are slanted; for a disc, about its radius.
+    pub fn stroke_width(&self) -> f64 {
+        let [width, height] = self.size;
+        let is_on = |column: usize, row: usize| {
+            column < width && row < height && self.on[row * width + column]
+        };
+        let (mut area, mut boundary) = (0_usize, 0_usize);
+        for at in (0..self.on.len()).filter(|&at| self.on[at]) {
+            let (column, row) = (at % width, at / width);
+            // A column or row before the first one wraps, and so is outside.
+            let near = [
+                is_on(column.wrapping_sub(1), row),
+                is_on(column + 1, row),
+                is_on(column, row.wrapping_sub(1)),
+                is_on(column, row + 1),
+            ];
+            area += 1;
+            boundary += near.iter().filter(|is_on| !**is_on).count();
+        }
+        2.0 * area as f64 / boundary.max(1) as f64
+    }
+
+    /// Returns the mask with pixels that touch only at a corner joined by another pixel. The added pixel is in the
+    /// lower row, so that corners at which it touches others are joined in later rows.
+    pub fn joined(mut self) -> Self {
+        let [width, height] = self.size;
+        for row in 1..height {
+            for column in 1..width {
+                let at = row * width + column;
+                match [at - width - 1, at - width, at - 1, at].map(|at| self.on[at]) {
+                    [true, false, false, true] => self.on[at - 1] = true,
+                    [false, true, true, false] => self.on[at] = true,
+                    _ => {}
+                }
+            }
+        }
+        self
     }
 
     /// Finds the components of the pixels that are on.

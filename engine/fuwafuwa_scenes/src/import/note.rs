@@ -31,7 +31,7 @@ pub enum NoteKind {
         /// Number of hidden models.
         left_out: usize,
     },
-    /// Models that the scene of the file does not contain were left out.
+    /// Models that are not placed in MagicaVoxel's world were left out.
     UnplacedModels {
         /// Number of models.
         left_out: usize,
@@ -56,9 +56,9 @@ pub enum NoteKind {
         /// Number of specks.
         left_out: usize,
     },
-    /// The solid voxels do not hang together: the body falls apart at once.
+    /// The solid voxels are not connected: the body falls apart at once.
     Pieces {
-        /// Number of pieces. Voxels hang together if they share a face (an edge in 2D).
+        /// Number of pieces. Voxels are connected if they share a face (an edge in 2D).
         pieces: usize,
         /// Whether some pieces touch along edges or at corners, so that the shape looks more connected than
         /// it is.
@@ -75,7 +75,7 @@ impl ImportNote {
 }
 
 impl NoteKind {
-    /// Returns the note on a shape that falls into pieces; `None` if all solid voxels hang together.
+    /// Returns the note on a shape that falls into pieces; `None` if all solid voxels are connected.
     pub fn of_pieces<D: Dim>(grid: &VoxelGrid<D>) -> Option<Self> {
         let pieces = count_pieces(grid, is_across_face);
         (pieces > 1).then(|| Self::Pieces {
@@ -90,7 +90,7 @@ fn is_across_face(offset: [i32; 3]) -> bool {
     offset.into_iter().map(i32::abs).sum::<i32>() == 1
 }
 
-/// Returns the number of pieces into which the solid voxels fall. Voxels hang together if `joins` accepts the
+/// Returns the number of pieces into which the solid voxels fall. Voxels are connected if `joins` accepts the
 /// offset from one to the other, whose components are -1 to 1.
 fn count_pieces<D: Dim>(grid: &VoxelGrid<D>, joins: impl Fn([i32; 3]) -> bool) -> usize {
     let offsets: Vec<_> = points_in([-1; 3], [1; 3]).filter(|&k| joins(k)).collect();
@@ -129,12 +129,15 @@ impl fmt::Display for NoteKind {
             Self::HiddenModels { left_out: 1 } => write!(f, "a hidden model is left out"),
             Self::HiddenModels { left_out } => write!(f, "{left_out} hidden models are left out"),
             Self::UnplacedModels { left_out: 1 } => {
-                write!(f, "a model that is not in the file's scene is left out")
+                write!(
+                    f,
+                    "a model that is not placed in MagicaVoxel's world is left out"
+                )
             }
             Self::UnplacedModels { left_out } => {
                 write!(
                     f,
-                    "{left_out} models that are not in the file's scene are left out"
+                    "{left_out} models that are not placed in MagicaVoxel's world are left out"
                 )
             }
             Self::Frames { left_out: 1 } => {
@@ -163,7 +166,7 @@ impl fmt::Display for NoteKind {
             Self::Specks { left_out } => write!(f, "{left_out} specks are left out"),
             Self::Pieces { pieces, touch } => {
                 let how = match touch {
-                    true => "some touch only along edges or at corners, which does not hold",
+                    true => "some touch only at edges or corners, so they come apart",
                     false => "they do not touch each other",
                 };
                 write!(f, "the shape falls into {pieces} pieces: {how}")
@@ -186,7 +189,7 @@ mod tests {
     fn pieces_are_counted_across_faces_only() {
         assert_eq!(note::<Dim3>([4, 4, 4], |_| true), None);
         let edge = note::<Dim3>([4, 4, 2], |[x, y, _]| (x < 2) == (y < 2));
-        let touching = "a.vox: the shape falls into 2 pieces: some touch only along edges or at corners, which does not hold";
+        let touching = "a.vox: the shape falls into 2 pieces: some touch only at edges or corners, so they come apart";
         assert_eq!(edge.as_deref(), Some(touching));
         let corner = note::<Dim3>([2, 2, 2], |voxel| voxel == [0; 3] || voxel == [1; 3]);
         assert_eq!(corner.as_deref(), Some(touching));

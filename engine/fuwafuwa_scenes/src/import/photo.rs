@@ -2,13 +2,13 @@
 
 use super::content::FileType;
 use super::error::{FilePosition, PositionedProblem, unexpected};
-use super::picture::{MAX_PIXELS, Pixels, check_size};
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Limits};
+use super::picture::{MAX_AREA, Pixels, check_size};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Limits, Rgb};
 use std::io::Cursor;
 
 /// Maximum memory for the pixels of a picture and the decoder's own tables [bytes]: three channels of 16 bits
 /// would not fit, but no format here has them.
-const DECODER_BYTES: u64 = 5 * (MAX_PIXELS as u64) * (MAX_PIXELS as u64);
+const DECODER_BYTES: u64 = 5 * MAX_AREA;
 
 /// Returns the decoder's name of a format that this module decodes.
 pub(super) fn format_of(file_type: FileType) -> Option<ImageFormat> {
@@ -19,6 +19,14 @@ pub(super) fn format_of(file_type: FileType) -> Option<ImageFormat> {
         FileType::Bmp => ImageFormat::Bmp,
         _ => return None,
     })
+}
+
+/// Returns width and height in the header of a file [pixels].
+pub(super) fn size_of(bytes: &[u8], format: ImageFormat) -> Option<[u32; 2]> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    reader.limits(limits());
+    let (width, height) = reader.into_dimensions().ok()?;
+    Some([width, height])
 }
 
 /// Decodes a picture, turned as its EXIF orientation says. `file_type` names the format in errors.
@@ -39,16 +47,46 @@ fn decode_as(bytes: &[u8], format: ImageFormat) -> ImageResult<Result<Pixels, Po
     if let Err(problem) = check_size(FilePosition::File, [width, height]) {
         return Ok(Err(problem));
     }
+    if let Err(problem) = check_length(format, bytes.len(), [width, height]) {
+        return Ok(Err(problem));
+    }
     let orientation = decoder.orientation()?;
     let mut picture = DynamicImage::from_decoder(decoder)?;
     picture.apply_orientation(orientation);
-    let picture = picture.into_rgba8();
     let size = [picture.width() as usize, picture.height() as usize];
-    let (colours, _) = picture.as_chunks::<4>();
-    Ok(Ok(Pixels {
-        size,
-        colours: colours.to_vec(),
-    }))
+    let colours = match &picture {
+        DynamicImage::ImageRgb8(picture) => {
+            let pixels = picture.pixels();
+            pixels
+                .map(|&Rgb([red, green, blue])| [red, green, blue, u8::MAX])
+                .collect()
+        }
+        DynamicImage::ImageRgba8(picture) => picture.pixels().map(|pixel| pixel.0).collect(),
+        _ => picture.to_rgba8().pixels().map(|pixel| pixel.0).collect(),
+    };
+    Ok(Ok(Pixels { size, colours }))
+}
+
+/// Checks that a file is long enough for its size, before memory is allocated for the pixels. JPEG and WebP have
+/// no useful limit: few bytes can stand for a large empty picture.
+fn check_length(
+    format: ImageFormat,
+    length: usize,
+    [width, height]: [u32; 2],
+) -> Result<(), PositionedProblem> {
+    let most_per_byte = match format {
+        // A code of 12 bits stands for at most 4095 pixels.
+        ImageFormat::Gif => 2730,
+        // A run of two bytes stands for at most 255 pixels.
+        ImageFormat::Bmp => 128,
+        _ => return Ok(()),
+    };
+    let needed = (u64::from(width) * u64::from(height)).div_ceil(most_per_byte);
+    if needed <= length as u64 {
+        return Ok(());
+    }
+    let expected = format!("at least {needed} bytes for {width} x {height} pixels");
+    Err(unexpected(FilePosition::File, expected, length))
 }
 
 /// Returns limits on memory. The size is checked here, where the error can name it.

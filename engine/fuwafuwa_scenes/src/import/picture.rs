@@ -4,28 +4,46 @@ use super::colours::Colours;
 use super::content::FileType;
 use super::drawing;
 use super::error::{
-    FilePosition, ImportError, PositionedProblem, in_file, no_grid, too_large, unexpected,
+    FilePosition, ImportError, PositionedProblem, Problem, in_file, no_grid, too_large_with,
+    unexpected,
 };
 use super::file::check_length;
-use super::mask::Mask;
+use super::frames;
+use super::mask::{Component, Mask, longer};
 use super::note::{Import, ImportNote, NoteKind};
 use super::paper::ink;
 use super::{photo, png};
 use fuwafuwa::MAX_EXTENT;
 use fuwafuwa::{Dim2, Error, VoxelGrid};
+use std::ops::Range;
 
 /// Maximum width and height of a picture [pixels].
 pub const MAX_PIXELS: u32 = 8192;
 
+/// Maximum number of pixels of a picture: 8192 × 6144, as a camera of 50 megapixels takes.
+pub const MAX_AREA: u64 = 3 << 24;
+
 /// Maximum width and height of a decoded picture [pixels]; a larger one is halved. A picture of this size takes
 /// 64 MiB.
 const MAX_DECODED: usize = 4096;
+
+/// Maximum mean width of the strokes of a drawing without paper, as a share of its longer side. Wider opaque parts
+/// are sprites.
+const WIDEST_STROKE: f64 = 0.05;
+/// Maximum share of transparent pixels at the corners of paper.
+const MOST_CORNERS: f64 = 0.1;
+/// Maximum share of transparent pixels that do not count at all.
+const MOST_STRAY: f64 = 0.001;
+/// Minimum red, green and blue of paper with transparent corners. A sprite with such corners is rarely as bright.
+const LEAST_BRIGHT: u8 = 192;
 
 /// A decoded picture.
 #[derive(Clone, Debug)]
 pub struct Picture {
     file: String,
     pixels: Pixels,
+    /// Number of frames of an animation that are not imported.
+    later_frames: usize,
 }
 
 /// Size of a picture and its pixels.
@@ -82,15 +100,37 @@ pub fn picture(
 impl Picture {
     /// Decodes a PNG, JPEG, WebP, GIF or BMP file. The content decides the format, not the name. A photo is
     /// turned as its EXIF orientation says. From an animated PNG file, takes the image that viewers without
-    /// animation show; from another animated file, the first frame. `file` is the name used in errors.
+    /// animation show; from another animated file, the first frame. [`Picture::import`] notes how many frames are
+    /// left out. `file` is the name used in errors.
     ///
     /// # Errors
     /// [`ImportError`] if the file is longer than [`super::MAX_FILE_BYTES`], is damaged, truncated or of
-    /// another type, or has more than [`MAX_PIXELS`] on a side.
+    /// another type, or has more than [`MAX_PIXELS`] on a side or more than [`MAX_AREA`] in all.
     pub fn decode(file: &str, bytes: &[u8]) -> Result<Self, ImportError> {
         let pixels = in_file(file, check_length(bytes).and_then(|()| decode(bytes)))?;
-        let file = file.into();
-        Ok(Self { file, pixels })
+        Ok(Self {
+            file: file.into(),
+            pixels,
+            later_frames: frames::left_out(bytes),
+        })
+    }
+
+    /// Returns the number of pixels in the header of a picture file, at most [`MAX_AREA`]; 0 if the header is
+    /// invalid.
+    pub(crate) fn pixels_of(bytes: &[u8]) -> usize {
+        let size = match FileType::of(bytes) {
+            FileType::Png => png::size_of(bytes),
+            found => photo::format_of(found).and_then(|format| photo::size_of(bytes, format)),
+        };
+        let [width, height] = size.unwrap_or_default();
+        MAX_AREA.min(u64::from(width) * u64::from(height)) as usize
+    }
+
+    /// Returns the note on frames of an animation that are not imported.
+    pub(crate) fn frames_note(&self) -> Option<ImportNote> {
+        let left_out = self.later_frames;
+        let kind = NoteKind::Frames { left_out };
+        (left_out > 0).then(|| ImportNote::new(&self.file, kind))
     }
 
     /// Returns width and height [pixels]. A side of more than 4096 pixels was halved.
@@ -105,7 +145,9 @@ impl Picture {
     /// - If the options name colours, a pixel gets the material of the nearest one. It is empty if that
     ///   material is 0, or if the pixel is more than half transparent (alpha below 128).
     /// - Otherwise all solid pixels have material 1. If any pixel is more than half transparent, the picture
-    ///   is a sprite: the other pixels are solid.
+    ///   is a sprite: the other pixels are solid. If they are thin strokes, they are the ink of a drawing. Bright
+    ///   paper with rounded transparent corners, and a picture with a few stray transparent pixels, are drawings
+    ///   on white paper.
     /// - If no pixel is so transparent, the picture is a drawing. Ink is what is clearly darker or more
     ///   coloured than the paper around it, so the paper may be coloured, lined or shaded. Closed outlines are
     ///   filled, unless [`PictureOptions::fill`] is off. Gaps of about one voxel are closed. Strokes thinner
@@ -122,9 +164,8 @@ impl Picture {
     pub fn import(&self, options: &PictureOptions) -> Result<Import<Dim2>, ImportError> {
         let (grid, kinds) = in_file(&self.file, self.try_import(options))?;
         let notes = kinds.into_iter();
-        let notes = notes
-            .map(|kind| ImportNote::new(&self.file, kind))
-            .collect();
+        let notes = notes.map(|kind| ImportNote::new(&self.file, kind));
+        let notes = self.frames_note().into_iter().chain(notes).collect();
         Ok(Import { grid, notes })
     }
 
@@ -144,8 +185,9 @@ impl Picture {
     ) -> Result<VoxelGrid<Dim2>, ImportError> {
         let grid = check_options(across, colours).and_then(|()| {
             let rule = SolidRule::of(&self.pixels, colours);
-            let grid = self.shape(&rule).grid(across, voxel_size);
-            grid.map_err(|error| no_grid(error, rule.sought()))
+            let shape = self.shape(&rule);
+            let grid = shape.grid(across, voxel_size);
+            grid.map_err(|error| no_shape(error, &shape, rule.sought()))
         });
         in_file(&self.file, grid)
     }
@@ -157,16 +199,20 @@ impl Picture {
         let PictureOptions { across, .. } = *options;
         check_options(across, &options.colours)?;
         let rule = SolidRule::of(&self.pixels, &options.colours);
-        let (shape, mut notes, sought) = match rule {
-            SolidRule::Drawn => {
-                let ink = ink(self.pixels.size, &self.pixels.colours);
+        let (ink, sought) = match rule {
+            SolidRule::Drawn => (Some(self.pixels.ink()), INK),
+            SolidRule::Alpha => (self.pixels.ink_of_sprite(), rule.sought()),
+            SolidRule::Colour(_) => (None, rule.sought()),
+        };
+        let (shape, mut notes) = match ink {
+            Some(ink) => {
                 let solid = drawing::solid(&ink, across, options.fill);
-                (Shape::of(solid.mask), solid.notes, INK)
+                (Shape::of(solid.mask), solid.notes)
             }
-            _ => (self.shape(&rule).trimmed(), Vec::new(), rule.sought()),
+            None => (self.shape(&rule).trimmed(), Vec::new()),
         };
         let grid = shape.grid(across, options.voxel_size);
-        let grid = grid.map_err(|error| no_grid(error, sought))?;
+        let grid = grid.map_err(|error| no_shape(error, &shape, sought))?;
         notes.extend(NoteKind::of_pieces(&grid));
         Ok((grid, notes))
     }
@@ -230,9 +276,22 @@ pub(super) fn check_size(
     place: FilePosition,
     [width, height]: [u32; 2],
 ) -> Result<(), PositionedProblem> {
-    let found = width.max(height);
-    let problem = too_large(place, "pixels on a side", found.into(), MAX_PIXELS.into());
-    (found <= MAX_PIXELS).then_some(()).ok_or(problem)
+    let (side, area) = (width.max(height), u64::from(width) * u64::from(height));
+    let (what, found, limit) = if side > MAX_PIXELS {
+        ("pixels on a side", side.into(), MAX_PIXELS.into())
+    } else if area > MAX_AREA {
+        ("pixels", area, MAX_AREA)
+    } else {
+        return Ok(());
+    };
+    let share = f64::from(MAX_PIXELS) / f64::from(side);
+    let share = share.min((MAX_AREA as f64 / area as f64).sqrt());
+    let percent = (100.0 * share) as u32;
+    let advice = match percent {
+        0 => String::new(),
+        _ => format!("; scale the picture down to {percent} %"),
+    };
+    Err(too_large_with(place, what, found, limit, advice))
 }
 
 fn check_options(across: usize, colours: &Colours) -> Result<(), PositionedProblem> {
@@ -248,7 +307,59 @@ fn check_options(across: usize, colours: &Colours) -> Result<(), PositionedProbl
     Ok(())
 }
 
+/// Returns the problem of a shape whose grid the engine rejects; `sought` names what would have been solid.
+fn no_shape(error: Error, shape: &Shape, sought: &'static str) -> PositionedProblem {
+    let has_solid = shape.materials.iter().any(|&material| material != 0);
+    match error {
+        Error::EmptyGrid if has_solid => (FilePosition::File, Problem::TooThin),
+        error => no_grid(error, sought),
+    }
+}
+
 impl Pixels {
+    /// Returns the ink of a drawing on paper.
+    fn ink(&self) -> Mask {
+        ink(self.size, &self.colours)
+    }
+
+    /// Returns the ink of a picture with transparent pixels, if it is a drawing and no sprite.
+    fn ink_of_sprite(&self) -> Option<Mask> {
+        let opaque = Mask {
+            size: self.size,
+            on: self.colours.iter().map(|&pixel| is_opaque(pixel)).collect(),
+        };
+        let drawn = self.is_paper(&opaque).then(|| self.ink());
+        if let Some(ink) = drawn.filter(|ink| ink.on.contains(&true)) {
+            return Some(ink);
+        }
+        let widest = WIDEST_STROKE * longer(&opaque.extent()) as f64;
+        (opaque.stroke_width() < widest).then_some(opaque)
+    }
+
+    /// Returns whether only a few stray pixels are transparent, or only the rounded corners of bright paper.
+    fn is_paper(&self, opaque: &Mask) -> bool {
+        let [width, height] = self.size;
+        let all = self.colours.len();
+        let solid = opaque.on.iter().filter(|is_on| **is_on).count();
+        let clear = (all - solid) as f64 / all.max(1) as f64;
+        if clear > MOST_CORNERS || clear <= MOST_STRAY {
+            return clear <= MOST_STRAY;
+        }
+        let is_bright = |pixel: &&[u8; 4]| {
+            is_opaque(**pixel) && pixel[..3].iter().all(|&channel| channel >= LEAST_BRIGHT)
+        };
+        let is_at_end = |range: &Range<usize>, side: usize| {
+            (range.start == 0 || range.end == side) && 2 * range.len() < side
+        };
+        let is_corner = |component: &Component| {
+            let [columns, rows] = &component.extent;
+            is_at_end(columns, width) && is_at_end(rows, height)
+        };
+        let is_mostly_bright = 2 * self.colours.iter().filter(is_bright).count() >= solid;
+        let clear = opaque.clone().inverted().components();
+        is_mostly_bright && clear.list.iter().all(is_corner)
+    }
+
     /// Returns the picture at half its size. Each pixel is the mean of a block of 2 × 2; the last row and
     /// column of an odd number are left out.
     fn halved(&self) -> Self {
@@ -310,9 +421,7 @@ impl<'a> SolidRule<'a> {
         match self {
             Self::Colour(_) => "pixel with an alpha of 128 or more whose colour is not empty",
             Self::Alpha => "pixel with an alpha of 128 or more",
-            Self::Drawn => {
-                "pixel with a red, green or blue below 128, or none covers half of a voxel"
-            }
+            Self::Drawn => "pixel with a red, green or blue below 128",
         }
     }
 }

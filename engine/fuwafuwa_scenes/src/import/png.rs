@@ -28,6 +28,15 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Pixels, PositionedProblem> {
     })
 }
 
+/// Returns width and height in the header of a PNG file [pixels].
+pub(super) fn size_of(bytes: &[u8]) -> Option<[u32; 2]> {
+    let (words, _) = bytes.get(16..24)?.as_chunks::<4>();
+    let &[width, height] = words else {
+        return None;
+    };
+    Some([width, height].map(u32::from_be_bytes))
+}
+
 fn decode_at(
     cursor: &mut Cursor<&[u8]>,
 ) -> Result<Result<Pixels, PositionedProblem>, DecodingError> {

@@ -54,6 +54,7 @@ pub struct Model {
     palette: Palette,
     notes: Vec<ImportNote>,
     work: usize,
+    is_alone: bool,
 }
 
 /// Imports a MagicaVoxel file with voxels of edge length `voxel_size` [m]. The palette index of a voxel is
@@ -126,7 +127,8 @@ impl Model {
         let none = Problem::Empty("solid voxel in the grid");
         let solid = whole.trimmed().ok_or((FilePosition::File, none));
         let solid = solid.and_then(|solid| {
-            check_size(solid.size.map(|extent| extent as u64))?;
+            let [width, height, depth] = solid.size.map(|extent| extent as u64);
+            check_size([width, depth, height])?;
             Ok(solid)
         });
         let mut palette = [[0; 3]; 256];
@@ -142,6 +144,7 @@ impl Model {
             solid,
             palette,
             notes: Vec::new(),
+            is_alone: true,
         })
     }
 
@@ -159,6 +162,12 @@ impl Model {
     /// Returns notes on what was left out of the model, and on overlaps.
     pub fn notes(&self) -> &[ImportNote] {
         &self.notes
+    }
+
+    /// Returns whether the file has no other model and no scene, so that its voxels depend on no rule of
+    /// assembly.
+    pub(crate) fn is_alone(&self) -> bool {
+        self.is_alone
     }
 
     /// Returns the work of decoding the model, in steps that each take some nanoseconds.
@@ -180,7 +189,7 @@ impl Model {
     }
 
     /// Converts the model to voxels like [`Model::grid`], with its notes. A further note tells if the solid
-    /// voxels do not hang together.
+    /// voxels are not connected.
     ///
     /// # Errors
     /// Same errors as [`Model::grid`].
@@ -247,7 +256,7 @@ impl Model {
                 (Some(_), _) => "solid voxel in this part of the file",
                 (None, 0) => "solid voxel in the models of the file",
                 (None, _) => {
-                    "solid voxel in the visible models of the file; others are hidden or not in its scene"
+                    "solid voxel in the visible models of the file; others are hidden or not placed in MagicaVoxel's world"
                 }
             };
             return Err((FilePosition::File, Problem::Empty(what)));
@@ -260,6 +269,7 @@ impl Model {
             solid,
             palette: content.palette,
             notes: notes(file, &placed, disputed),
+            is_alone: content.models.len() == 1 && content.graph.is_empty(),
         })
     }
 }

@@ -12,7 +12,7 @@ pub(super) struct Budget {
     pub(super) distances: usize,
     /// Remaining plane tests: one for each cutting plane and voxel of a diced body.
     pub(super) plane_tests: usize,
-    /// Remaining colour comparisons: one for each pixel and named colour of a picture.
+    /// Remaining colour comparisons: one for each pixel of a picture, and one for each pixel and named colour.
     pub(super) colour_comparisons: usize,
     /// Remaining steps of decoding models.
     model_steps: usize,
@@ -26,7 +26,7 @@ impl Budget {
             voxels: 0,
             distances: 1 << 27,
             plane_tests: 1 << 26,
-            // Budget for four pictures of the maximum size with 16 named colours each.
+            // Budget for four pictures of 4096 × 4096 pixels with 16 named colours each.
             colour_comparisons: 1 << 30,
             // Budget for 16 models of the maximum size.
             model_steps: 1 << 29,
@@ -44,17 +44,23 @@ impl Budget {
 
     /// Checks that the voxels of a model are within the limit of the scene.
     pub(super) fn check_model(&self, size: [i32; 3]) -> Result<(), FieldError> {
-        let [x, y, z] = size;
+        // On the axes of MagicaVoxel, as its user sees them.
+        let [x, z, y] = size;
         let count = size
             .into_iter()
             .map(|extent| extent as usize)
             .product::<usize>();
         let (most, found) = (self.most_voxels, self.voxels.saturating_add(count));
         let share = most.saturating_sub(self.voxels) as f64 / count as f64;
+        let advice = match (100.0 * share.cbrt()) as usize {
+            0 => "remove another body".into(),
+            percent => format!(
+                "make the model smaller, to {percent} % of its width, or use a part of it with model = \"name\""
+            ),
+        };
         let expected = format!(
             "expected {most} voxels at most in the grids of all bodies together, found {found}, of which \
-             {x} x {y} x {z} in this model; make the model smaller, to {:.0} % of its width, or use a part of it",
-            (100.0 * share.cbrt()).floor()
+             {x} x {y} x {z} in this model; {advice}"
         );
         require(found <= most, "file", expected)
     }
@@ -82,6 +88,15 @@ impl Budget {
             format!("expected {most} at most in a body of {voxels} voxels, found {parts}");
         require(parts <= most, "part", expected)?;
         self.distances -= parts * voxels;
+        Ok(())
+    }
+
+    /// Takes the work of decoding a picture, before its pixels are allocated.
+    pub(super) fn take_picture(&mut self, pixels: usize) -> Result<(), FieldError> {
+        let expected =
+            "expected fewer or smaller pictures in the scene: decoding them takes too long";
+        require(pixels <= self.colour_comparisons, "file", expected)?;
+        self.colour_comparisons -= pixels;
         Ok(())
     }
 
@@ -115,5 +130,16 @@ mod tests {
         assert!(budget.take_pixels(1 << 24, 0).is_err());
         assert!(budget.take_distances(0, usize::MAX).is_ok());
         assert!(budget.take_voxels(usize::MAX).is_err());
+    }
+
+    #[test]
+    fn model_that_other_bodies_leave_no_room_for_asks_to_remove_one() {
+        let mut budget = Budget::of_scene(1000);
+        budget.take_voxels(1000).unwrap();
+        let error = format!("{:?}", budget.check_model([4, 2, 3]).unwrap_err());
+        assert!(
+            error.contains("4 x 3 x 2 in this model; remove another body"),
+            "{error}"
+        );
     }
 }

@@ -1,19 +1,19 @@
-//! Files embedded in a scene, so that it is self-contained. A picture is embedded as the voxels of its body,
-//! so later changes of the rules for pictures do not change the scene.
+//! Files embedded in a scene, so that it is self-contained. A picture is embedded as the voxels of its body, and
+//! several models of a file as one, so later changes of the rules for imports do not change the scene.
 
 use super::body::BodyText;
 use super::budget::Budget;
 use super::error::FieldError;
 use super::grid::{check_across, colours, wrong_type};
 use crate::import::{
-    FilePosition, FileType, ImportError, ImportNote, Model, Picture, PictureOptions, Problem,
-    png_of,
+    FilePosition, FileType, ImportError, ImportNote, Model, NoteKind, Picture, PictureOptions,
+    Problem, png_of,
 };
 use fuwafuwa::MAX_EXTENT;
 use std::io;
 
-/// Maximum size of a file that is embedded whole, if its body allows that [bytes]. Larger files are reduced to
-/// the voxels of their bodies.
+/// Maximum length of a plain PNG file that is embedded whole [bytes]. Larger files are reduced to the voxels of
+/// their bodies.
 const SMALL: usize = 1 << 16;
 
 /// Function that reads a picture or a model named in a scene. It decides where files are searched.
@@ -57,17 +57,25 @@ impl BodyText {
         let across = self.n.unwrap_or(MAX_EXTENT);
         check_across(across)?;
         let colours = colours(self)?;
+        budget.take_picture(Picture::pixels_of(&bytes))?;
         let picture = Picture::decode(file, &bytes).map_err(FieldError::file)?;
         budget.take_pixels(picture.size().iter().product(), colours.named.len())?;
         let fill = self.fill.take().unwrap_or(true);
         let is_plain = self.plain.take().unwrap_or(false);
         if is_plain && bytes.len() <= SMALL && FileType::of(&bytes) == FileType::Png {
             self.embed(&bytes);
-            return Ok(Vec::new());
+            // An empty shape is reported when the body is built.
+            let grid = picture.grid(across, 1.0, &colours).ok();
+            let pieces = grid.and_then(|grid| NoteKind::of_pieces(&grid));
+            let pieces = pieces.map(|kind| ImportNote::new(file, kind));
+            return Ok(picture.frames_note().into_iter().chain(pieces).collect());
         }
         let (grid, notes) = if is_plain {
             let grid = picture.grid(across, 1.0, &colours);
-            (grid.map_err(FieldError::file)?, Vec::new())
+            let grid = grid.map_err(FieldError::file)?;
+            let pieces = NoteKind::of_pieces(&grid).map(|kind| ImportNote::new(file, kind));
+            let notes = picture.frames_note().into_iter().chain(pieces).collect();
+            (grid, notes)
         } else {
             let options = PictureOptions {
                 across,
@@ -84,9 +92,9 @@ impl BodyText {
         Ok(notes)
     }
 
-    /// Embeds the visible models of a file, or the part of it that the body is made from. A file that is no
-    /// longer than these models is embedded whole, as is an invalid file, whose error is reported when the
-    /// body is built.
+    /// Embeds the visible models of a file, or the part of it that the body is made from, as one model. A file
+    /// with one model and no scene is embedded whole, if it is no longer than that. An invalid file is embedded
+    /// whole, too; its error is reported when the body is built.
     fn embed_model(
         &mut self,
         file: &str,
@@ -99,7 +107,8 @@ impl BodyText {
         };
         budget.take_model(model.work())?;
         let less = model.bytes();
-        if self.model.take().is_some() || less.len() < bytes.len() {
+        let is_part = self.model.take().is_some();
+        if is_part || !model.is_alone() || less.len() < bytes.len() {
             self.embed(&less);
         } else {
             self.embed(bytes);

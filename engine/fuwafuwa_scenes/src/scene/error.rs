@@ -183,8 +183,8 @@ pub(super) fn vector_of<D: Dim>(field: &str, numbers: [f32; 3]) -> Result<D::Vec
     Ok(D::Vector::from_vec3(Vec3::from(numbers)))
 }
 
-/// Source of a scene: its name, the lines of its values and notes on its files. All origins compare equal, because they are not
-/// part of a scene's content.
+/// Source of a scene: its name, the line numbers of its values, and notes on its files. All origins compare
+/// equal, because they are not part of a scene's content.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Origin {
     pub(super) name: String,

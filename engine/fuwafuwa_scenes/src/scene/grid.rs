@@ -211,6 +211,7 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
                 "material",
                 "not allowed together with colours, which name the materials",
             )?;
+            budget.take_picture(Picture::pixels_of(&bytes))?;
             let picture = Picture::decode(&name, &bytes).map_err(FieldError::file)?;
             let pixels: usize = picture.size().iter().product();
             budget.take_pixels(pixels, colours.named.len())?;

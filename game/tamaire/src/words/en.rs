@@ -317,7 +317,9 @@ fn import_note(note: &ImportNote) -> String {
             format!("{file}: hidden parts are left out ({left_out}).")
         }
         NoteKind::UnplacedModels { left_out } => {
-            format!("{file}: parts that are not in its scene are left out ({left_out}).")
+            format!(
+                "{file}: parts that are not placed in MagicaVoxel's world are left out ({left_out})."
+            )
         }
         NoteKind::Frames { .. } => {
             format!("{file} is an animation. Only its first picture is used.")
@@ -327,7 +329,7 @@ fn import_note(note: &ImportNote) -> String {
         }
         NoteKind::Pieces { pieces, touch } => {
             let how = if touch {
-                " Cubes that touch only at an edge do not stick together."
+                " Cubes that touch only at edges or corners come apart."
             } else {
                 ""
             };

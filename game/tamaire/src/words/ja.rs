@@ -317,7 +317,9 @@ fn import_note(note: &ImportNote) -> String {
             format!("{file}：かくしてある部分（{left_out}こ）は使いませんでした。")
         }
         NoteKind::UnplacedModels { left_out } => {
-            format!("{file}：シーンにない部分（{left_out}こ）は使いませんでした。")
+            format!(
+                "{file}：MagicaVoxelのワールドに置かれていない部分（{left_out}こ）は使いませんでした。"
+            )
         }
         NoteKind::Frames { .. } => {
             format!("{file} はアニメーションなので、さいしょの絵だけを使いました。")
@@ -327,7 +329,7 @@ fn import_note(note: &ImportNote) -> String {
         }
         NoteKind::Pieces { pieces, touch } => {
             let how = if touch {
-                "ふちや かどだけでは、くっつきません。"
+                "ふちや かどだけで ふれている所は、はなれます。"
             } else {
                 ""
             };

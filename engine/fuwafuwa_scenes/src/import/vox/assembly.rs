@@ -75,7 +75,7 @@ pub(super) fn assemble(
     let placed = placed.fold(0, usize::saturating_add);
     if placed > MAX_PLACED {
         let expected = format!("at most {MAX_PLACED} voxels in all visible models together");
-        let found = format!("{placed} (choose a part of the scene)");
+        let found = format!("{placed} (choose a part of the scene with model = \"name\")");
         return Err(unexpected(FilePosition::File, expected, found));
     }
     let Some(bounds) = bounds_of_all(models, placements) else {
@@ -119,7 +119,7 @@ fn bounds_of_all(models: &[StoredModel], placements: &[Placement]) -> Option<Bou
     }))
 }
 
-/// Checks the size of the box around all solid voxels.
+/// Checks the size of the box around all solid voxels, given on the axes of the file.
 pub(super) fn check_size(size: [u64; 3]) -> Result<(), PositionedProblem> {
     let longest = size.into_iter().max().unwrap_or(0);
     let count = size.into_iter().fold(1, u64::saturating_mul);
@@ -133,7 +133,7 @@ pub(super) fn check_size(size: [u64; 3]) -> Result<(), PositionedProblem> {
     );
     let [x, y, z] = size;
     let found = format!(
-        "{x} x {y} x {z} = {count} ({excess:.1} times too wide: scale the model down or choose a part of it)"
+        "{x} x {y} x {z} = {count} ({excess:.1} times too wide: scale the model down or choose a part of it with model = \"name\")"
     );
     Err(unexpected(FilePosition::File, expected, found))
 }

@@ -190,7 +190,9 @@ impl<'a> Graph<'a> {
             .map(|name| quoted(&String::from_utf8_lossy(name)));
         let listed = listed.collect::<Vec<_>>().join(", ");
         let expected = match names.len() {
-            0 => "no name of a part: no part of the file has a name".into(),
+            0 => {
+                "a named part (no part of the file has a name, so `model` cannot choose one)".into()
+            }
             1..=MAX_NAMES => format!("the name of a part: {listed}"),
             count => format!("the name of a part: {listed} or {} more", count - MAX_NAMES),
         };
@@ -234,8 +236,10 @@ impl Walk<'_> {
     fn push(&mut self, id: i32, state: State) -> Result<(), PositionedProblem> {
         self.placed.visits += 1;
         if self.placed.visits > MAX_VISITS {
-            let expected = format!("at most {MAX_VISITS} nodes on all paths from the root");
-            let advice = "more (join models before you save the file, or choose a smaller scene)";
+            // MagicaVoxel writes two nodes for each object and each group.
+            let most = MAX_VISITS / 2;
+            let expected = format!("at most {most} objects and groups, copies included");
+            let advice = "more (merge objects before saving)";
             return Err(unexpected(FilePosition::File, expected, advice));
         }
         self.to_do.push(Step::Enter(id, state));
