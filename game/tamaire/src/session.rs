@@ -175,8 +175,8 @@ impl Session {
 /// first push when the player began catches up at this rate.
 const CATCH_UP: usize = 4;
 
-/// Lets a ghost play until its clock shows `clock` ticks, at most [`CATCH_UP`] ticks at a time. As long as the
-/// player has not begun, the ghost waits before its first push.
+/// Lets a ghost play until its clock shows `clock` ticks, at most [`CATCH_UP`] ticks at a time. Until the
+/// player's first push, the ghost plays up to, but not including, its own.
 fn race(ghost: &mut Playback, clock: u64) -> Result<(), ReplayError> {
     if clock == 0 && !ghost.is_before_first_push() {
         return ghost.step();

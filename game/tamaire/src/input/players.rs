@@ -205,9 +205,8 @@ impl Players {
     /// Returns the next goal of a hand on its way to the position `aim` that a pointer, finger or stick sets.
     ///
     /// When a round begins, the pointer may lie anywhere, also on a body. The hand must not dash there. Until
-    /// the pointer has been at the hand, the hand glides slowly, and it goes around bodies or stops
-    /// before it touches one. `here`
-    /// is the target position of the hand, `wanted` its goal.
+    /// the pointer has been at the hand, the hand glides slowly, and it goes around bodies or stops before it
+    /// touches one. `here` is the target position of the hand, `wanted` its goal.
     fn approach(
         &mut self,
         player: usize,

@@ -1,6 +1,6 @@
 //! Settings of the player.
 
-use super::confirmation::{is_pending, set_pending};
+use super::confirmation::{is_asked, is_pending, set_pending};
 use super::widgets::{card, choice, dim_background, header, page, page_rect, slider};
 use crate::game::{Game, Screen};
 use crate::input::{Action, Scanning};
@@ -8,7 +8,7 @@ use crate::settings::{Quality, Settings};
 use crate::words::{Language, Words};
 use app_shell::Theme;
 use app_shell::widgets::{ButtonStyle, button};
-use egui::{RichText, Ui, vec2};
+use egui::{Id, Response, RichText, Ui, vec2};
 use tamaire_play::Assist;
 use tamaire_sound::Menu;
 
@@ -103,6 +103,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         game.settings = chosen.in_range();
         game.keep_settings();
     }
+    if to_forces || to_licences || back {
+        // A question that was left unanswered is not asked again on the next visit.
+        set_pending(ui, None);
+    }
     if to_forces {
         game.blip(Menu::Confirm);
         game.go(Screen::Forces);
@@ -140,13 +144,16 @@ fn scanning(ui: &mut Ui, theme: &Theme, said: &Words, chosen: &mut Scanning) {
 }
 
 /// Shows the button that restores the default settings. A press asks, with the answer "no" in the place of the
-/// button. Returns whether the player has confirmed.
+/// button. The question waits until it is answered. Returns whether the player has confirmed.
 fn is_reset_confirmed(ui: &mut Ui, theme: &Theme, said: &Words) -> bool {
     const RESET: &str = "reset";
     let size = vec2(300.0, 48.0);
-    if !is_pending(ui, RESET) {
-        if button(ui, theme, said.reset, size, ButtonStyle::Other).clicked() {
+    if !is_asked(ui, RESET) {
+        let response = button(ui, theme, said.reset, size, ButtonStyle::Other);
+        take_focus(ui, &response);
+        if response.clicked() {
             set_pending(ui, Some(RESET));
+            pass_focus(ui);
         }
         return false;
     }
@@ -154,15 +161,32 @@ fn is_reset_confirmed(ui: &mut Ui, theme: &Theme, said: &Words) -> bool {
     ui.label(question.size(21.0).color(theme.ink));
     let mut is_confirmed = false;
     ui.horizontal_wrapped(|ui| {
-        if button(ui, theme, said.cancel, size, ButtonStyle::Main).clicked() {
+        let cancel = button(ui, theme, said.cancel, size, ButtonStyle::Main);
+        take_focus(ui, &cancel);
+        is_confirmed = button(ui, theme, said.reset_now, size, ButtonStyle::Other).clicked();
+        if cancel.clicked() || is_confirmed {
             set_pending(ui, None);
-        }
-        if button(ui, theme, said.reset_now, size, ButtonStyle::Other).clicked() {
-            set_pending(ui, None);
-            is_confirmed = true;
+            pass_focus(ui);
         }
     });
     is_confirmed
+}
+
+/// Lets the next widget that calls [`take_focus`] take the focus. The pressed button is replaced by others, so the
+/// focus would be lost.
+fn pass_focus(ui: &Ui) {
+    ui.data_mut(|data| data.insert_temp(passed_focus(), true));
+}
+
+fn take_focus(ui: &Ui, response: &Response) {
+    let is_passed = ui.data_mut(|data| data.remove_temp::<bool>(passed_focus()));
+    if is_passed == Some(true) {
+        response.request_focus();
+    }
+}
+
+fn passed_focus() -> Id {
+    Id::unique("focus of the reset question")
 }
 
 fn section(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut Ui)) {
