@@ -106,6 +106,24 @@ impl Session {
         }
     }
 
+    /// Whether a replay is being wound.
+    pub fn is_winding(&self) -> bool {
+        matches!(&self.player, Player::Replay(reel) if reel.is_winding())
+    }
+
+    /// Returns the start of the round that is replayed. `None` if people play the round.
+    pub fn start(&self) -> Option<&AnyRound> {
+        match &self.player {
+            Player::People(_) => None,
+            Player::Replay(reel) => Some(reel.start()),
+        }
+    }
+
+    /// Computing time of all ticks of the last frame [s].
+    pub fn time_in_ticks(&self) -> f64 {
+        self.pace.spent()
+    }
+
     /// Returns the error that stopped a replay or a ghost, once.
     pub fn take_complaint(&mut self) -> Option<ReplayError> {
         self.complaint.take()

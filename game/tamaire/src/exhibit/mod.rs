@@ -292,6 +292,7 @@ impl Stand {
         self.attention = Attention::There;
         self.freshen(game);
         self.visit = Some(Visit::begin());
+        game.forget_slow_drawing();
         match self.config.levels.0.len() {
             1 => self.choose(game, 0),
             _ => self.phase = Phase::Choice,

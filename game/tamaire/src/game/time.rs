@@ -16,7 +16,9 @@ impl Game {
     pub fn update(&mut self, seconds: f32) {
         self.time += f64::from(seconds);
         self.notices.pass(seconds);
-        let runs = self.is_seen() && self.screen() != Screen::Paused && !self.bout.stepping;
+        let was_winding = self.bout.session.is_winding();
+        let is_paused = self.screen() == Screen::Paused || (self.bout.stepping && !was_winding);
+        let runs = self.is_seen() && !is_paused;
         let is_watched = self.screen() == Screen::Play && !self.bout.session.is_played();
         let watch_speed = if is_watched {
             self.bout.watch_speed
@@ -28,6 +30,9 @@ impl Game {
         if runs {
             self.pass_ticks(seconds * pace);
             self.bout.effects.advance(seconds * pace);
+        }
+        if was_winding && !self.bout.session.is_winding() {
+            self.show_wound();
         }
         if let Some(complaint) = self.bout.session.take_complaint() {
             self.notify((self.words().replay_error)(&complaint));
@@ -79,7 +84,7 @@ impl Game {
             arena: self.bout.round().level().arena(),
             turn: self.bout.turn(),
         };
-        let still = self.settings.reduced_motion || self.quality() == Quality::Low;
+        let still = self.is_still();
         // Keys and sticks move the hand only during a round; in menus they move the focus. After a win, input
         // is ignored so that the body is not torn any more.
         let is_won = self.bout.round().progress().outcome.is_some();
@@ -152,6 +157,19 @@ impl Game {
                 forces.tear(device, size);
             }
         }
+    }
+
+    /// Shows the bodies as they are after a replay was wound, before the next tick.
+    fn show_wound(&mut self) {
+        let still = self.is_still();
+        let bout = &mut self.bout;
+        bout.effects
+            .process_tick(bout.session.round(), &mut bout.camera, still);
+    }
+
+    /// Whether effects are reduced, by choice or because drawing is slow.
+    fn is_still(&self) -> bool {
+        self.settings.reduced_motion || self.quality() == Quality::Low
     }
 
     /// Tells the player once if the machine is too slow for the round. The speed is known after two seconds.
