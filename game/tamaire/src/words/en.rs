@@ -311,7 +311,8 @@ pub(super) const WORDS: Words = Words {
     },
     play_as_two: "Play as two",
     play_alone: "Play alone",
-    no_letter_keys: "Only arrow keys are set for moving. Choose letter keys for the second player in Settings, Controls.",
+    no_arrow_keys: "The first player has no arrow key for each direction. Choose them in Settings, Controls.",
+    no_letter_keys: "The second player has no letter key for each direction. Choose them in Settings, Controls.",
     one_hand: "This level has only one hand, so one player plays.",
 };
 
