@@ -2,10 +2,10 @@
 
 use super::{Controls, CurrentRound, Game, Screen, heard};
 use crate::haptics;
-use crate::input::{Hands, InputMapping};
+use crate::input::{Bindings, Devices, Hands, InputMapping, Players};
 use crate::settings::Quality;
 use fuwafuwa::{DEFAULT_TICK, Vec3};
-use tamaire_play::{InputFrame, PLAYERS};
+use tamaire_play::{AnyRound, InputFrame, PLAYERS};
 use tamaire_sound::Cue;
 
 /// Speed of slow motion, relative to normal speed.
@@ -105,7 +105,6 @@ impl Game {
             },
             settings,
             sound,
-            forces,
             clock,
             ..
         } = self;
@@ -117,19 +116,7 @@ impl Game {
                 if !in_round {
                     return InputFrame::default();
                 }
-                // A player who joins now begins at the start position of the level.
-                let targets = round.level().scene().hand_targets(0);
-                let mut targets: Vec<Vec3> = targets.into_iter().map(Vec3::from).collect();
-                for (target, hand) in targets.iter_mut().zip(round.hands()) {
-                    *target = hand.target;
-                }
-                let bindings = &settings.bindings;
-                let hands = Hands {
-                    targets: &targets,
-                    radius: round.hands()[0].radius,
-                    distance_to_bodies: &|position| round.distance_to_bodies(position),
-                };
-                let frame = players.frame(devices, bindings, &manner, &hands, DEFAULT_TICK);
+                let frame = input_for(round, players, devices, &settings.bindings, &manner);
                 // Clears the height by which the player has scrolled. Scrolling then counts once, however
                 // many ticks are played in this frame.
                 devices.lift = 0.0;
@@ -148,13 +135,17 @@ impl Game {
         if is_heard {
             devices.pointer = None;
         }
-        for (player, size) in tears
-            .into_iter()
-            .enumerate()
-            .filter(|(_, size)| *size > 0.0)
-        {
-            if let Some(device) = players.device_of(player).filter(|_| in_round) {
-                forces.tear(device, size);
+        if in_round {
+            self.feel_tears(tears);
+        }
+    }
+
+    /// Lets the stick or pad of each player feel the tears of the last ticks. `tears` are their sizes.
+    fn feel_tears(&mut self, tears: [f32; PLAYERS]) {
+        let tears = tears.into_iter().enumerate();
+        for (player, size) in tears.filter(|(_, size)| *size > 0.0) {
+            if let Some(device) = self.controls.players.device_of(player) {
+                self.forces.tear(device, size);
             }
         }
     }
@@ -215,6 +206,28 @@ impl Game {
             self.go(Screen::Result);
         }
     }
+}
+
+/// Returns the input of the players for the next tick of a round.
+fn input_for(
+    round: &AnyRound,
+    players: &mut Players,
+    devices: &Devices,
+    bindings: &Bindings,
+    manner: &InputMapping,
+) -> InputFrame {
+    // A player who joins now begins at the start position of the level.
+    let targets = round.level().scene().hand_targets(0);
+    let mut targets: Vec<Vec3> = targets.into_iter().map(Vec3::from).collect();
+    for (target, hand) in targets.iter_mut().zip(round.hands()) {
+        *target = hand.target;
+    }
+    let hands = Hands {
+        targets: &targets,
+        radius: round.hands()[0].radius,
+        distance_to_bodies: &|position| round.distance_to_bodies(position),
+    };
+    players.frame(devices, bindings, manner, &hands, DEFAULT_TICK)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use app_shell::direction::to_world;
 use egui::Vec2;
 use fuwafuwa::Vec3;
 use std::collections::BTreeMap;
-use sticks::DeviceId;
+use sticks::{Device, DeviceId};
 use tamaire_play::{InputFrame, PLAYERS};
 
 /// Change of a stick's position below which the stick counts as still (full deflection = 1).
@@ -316,7 +316,6 @@ impl Players {
         manner: &InputMapping,
         here: Vec3,
     ) -> Asked {
-        let height = self.goals[player].unwrap_or(here).y;
         let holds = |seat: InputSource| match player {
             0 => second != Some(seat),
             _ => second == Some(seat),
@@ -342,32 +341,12 @@ impl Players {
         }
         let all = devices.sticks.devices.iter();
         for device in all.filter(|device| holds(InputSource::Stick(device.id))) {
-            let stick = sticks::radial_dead_zone(device.aim(), DEAD, RIM);
-            let before = self.leans.entry(device.id).or_default();
-            let moved = (Vec2::from(stick) - Vec2::from(*before)).length() > NOISE;
-            if moved || stick == [0.0; 2] {
-                *before = stick;
-            }
             let pushes_back = devices.pushing.contains(&device.id);
-            if !manner.stick_sets_position && !pushes_back {
-                asked.lean += Vec2::from(stick);
-            } else if moved || self.used[player] == Some(InputSource::Stick(device.id)) {
-                asked.position = Some(manner.position_of(stick, height));
-            }
-            let held = held_on(device, bindings);
-            let means = |action| held.contains(&action);
-            let hat = direction(means);
-            let rise = opposed(means, Action::Raise, Action::Lower) + rise_of(device);
-            let rise = rises * rise;
-            asked.lean += hat;
-            asked.lift += rise;
-            // A force-feedback stick keeps its position when it is let go, so its deflection does not show
-            // that it is in use.
-            let leans = stick != [0.0; 2] && !pushes_back;
-            if moved || leans || hat != Vec2::ZERO || rise != 0.0 {
-                self.used[player] = Some(InputSource::Stick(device.id));
-                self.rested[player] = 0.0;
-            }
+            let height = self.goals[player].unwrap_or(here).y;
+            let wish = self.asked_by_stick(player, device, pushes_back, bindings, manner, height);
+            asked.position = wish.position.or(asked.position);
+            asked.lean += wish.lean;
+            asked.lift += wish.lift;
         }
         let pressed = |action| devices.pressed.contains(&action);
         let thumbs = rises * opposed(pressed, Action::Raise, Action::Lower);
@@ -384,6 +363,46 @@ impl Players {
         if player == 1 && second == Some(InputSource::Finger) && devices.second.is_some() {
             asked.position = devices.second;
             self.used[1] = Some(InputSource::Finger);
+        }
+        asked
+    }
+
+    /// Collects the requests of a stick or pad. `pushes_back` says whether it has force feedback, `height` is the
+    /// height of the player's goal [m].
+    fn asked_by_stick(
+        &mut self,
+        player: usize,
+        device: &Device,
+        pushes_back: bool,
+        bindings: &Bindings,
+        manner: &InputMapping,
+        height: f32,
+    ) -> Asked {
+        let mut asked = Asked::default();
+        let stick = sticks::radial_dead_zone(device.aim(), DEAD, RIM);
+        let before = self.leans.entry(device.id).or_default();
+        let moved = (Vec2::from(stick) - Vec2::from(*before)).length() > NOISE;
+        if moved || stick == [0.0; 2] {
+            *before = stick;
+        }
+        if !manner.stick_sets_position && !pushes_back {
+            asked.lean += Vec2::from(stick);
+        } else if moved || self.used[player] == Some(InputSource::Stick(device.id)) {
+            asked.position = Some(manner.position_of(stick, height));
+        }
+        let held = held_on(device, bindings);
+        let means = |action| held.contains(&action);
+        let hat = direction(means);
+        let rises = if manner.turn.is_some() { 1.0 } else { 0.0 };
+        let rise = rises * (opposed(means, Action::Raise, Action::Lower) + rise_of(device));
+        asked.lean += hat;
+        asked.lift += rise;
+        // A force-feedback stick keeps its position when it is let go, so its deflection does not show
+        // that it is in use.
+        let leans = stick != [0.0; 2] && !pushes_back;
+        if moved || leans || hat != Vec2::ZERO || rise != 0.0 {
+            self.used[player] = Some(InputSource::Stick(device.id));
+            self.rested[player] = 0.0;
         }
         asked
     }

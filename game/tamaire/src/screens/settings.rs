@@ -26,74 +26,12 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         super::widgets::focus_first(ui, &response);
         back |= response.clicked();
         page(ui, "settings", 820.0, |ui| {
-            let options = [(false, said.off), (true, said.on)];
-            let switch = |ui: &mut Ui, name: &str, is_on: &mut bool| {
-                choice(ui, &theme, name, is_on, &options);
-            };
-            let share = |ui: &mut Ui, name: &str, value: &mut f32| {
-                slider(ui, &theme, name, value, 0.0, 1.0, 0.05);
-            };
-            card(ui, &theme, |ui| {
-                ui.set_width(ui.available_width());
-                let language = &mut chosen.language;
-                choice(ui, &theme, said.language, language, &Language::ALL);
-            });
-            section(ui, &theme, said.sound_section, |ui| {
-                share(ui, said.volume, &mut chosen.volume);
-                share(ui, said.effects, &mut chosen.effects);
-                share(ui, said.music, &mut chosen.music);
-                share(ui, said.interface, &mut chosen.interface);
-            });
-            section(ui, &theme, said.play_section, |ui| {
-                slider(ui, &theme, said.speed, &mut chosen.speed, 0.5, 1.0, 0.05);
-                let sensitivity = &mut chosen.sensitivity;
-                slider(ui, &theme, said.sensitivity, sensitivity, 0.3, 3.0, 0.1);
-                switch(ui, said.stick_places, &mut chosen.stick_places);
-                switch(ui, said.race_best, &mut chosen.race_best);
-                share(ui, said.haptics, &mut chosen.haptics);
-                let size = vec2(ui.available_width(), 44.0);
-                to_forces = button(ui, &theme, said.try_forces, size, ButtonStyle::Other).clicked();
-            });
-            section(ui, &theme, said.hands_section, |ui| {
-                switch(ui, said.toggle_keys, &mut chosen.toggle_keys);
-                switch(ui, said.dwell, &mut chosen.dwell);
-                scanning(ui, &theme, said, &mut chosen.scanning);
-            });
-            section(ui, &theme, said.assists_section, |ui| {
-                for assist in [Assist::WiderBasket, Assist::Unbreakable] {
-                    let mut is_on = chosen.assists.contains(&assist);
-                    switch(ui, (said.assist)(assist), &mut is_on);
-                    match is_on {
-                        true => chosen.assists.insert(assist),
-                        false => chosen.assists.remove(&assist),
-                    };
-                }
-            });
-            section(ui, &theme, said.look_section, |ui| {
-                switch(ui, said.full_screen, &mut chosen.full_screen);
-                switch(ui, said.reduced_motion, &mut chosen.reduced_motion);
-                switch(ui, said.colour_safe, &mut chosen.colour_safe);
-                let names = Quality::ALL.map(|quality| (quality, (said.quality_name)(quality)));
-                choice(ui, &theme, said.quality, &mut chosen.quality, &names);
-                let text_size = &mut chosen.text_size;
-                slider(ui, &theme, said.text_size, text_size, 0.8, 1.6, 0.1);
-            });
+            to_forces = sections(ui, &theme, said, &mut chosen);
             controls(ui, game, &mut chosen);
             let size = vec2(300.0, 48.0);
             ui.add_space(10.0);
             if is_reset_confirmed(ui, &theme, said) {
-                let usual = Settings::default();
-                chosen = Settings {
-                    language: chosen.language,
-                    // A reset never raises the force, and it keeps measured calibrations.
-                    haptics: chosen.haptics.min(usual.haptics),
-                    calibrations: std::mem::take(&mut chosen.calibrations),
-                    // A player who needs scanning could not operate the game without it.
-                    scanning: chosen.scanning,
-                    toggle_keys: chosen.toggle_keys,
-                    dwell: chosen.dwell,
-                    ..usual
-                };
+                chosen = reset(std::mem::take(&mut chosen));
             }
             ui.add_space(8.0);
             to_licences = button(ui, &theme, said.licences, size, ButtonStyle::Other).clicked();
@@ -116,6 +54,80 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     } else if back {
         game.blip(Menu::Back);
         game.go_back();
+    }
+}
+
+/// Shows all settings except keys and buttons. Returns whether the player wants to test sticks and pads.
+fn sections(ui: &mut Ui, theme: &Theme, said: &Words, chosen: &mut Settings) -> bool {
+    let mut to_forces = false;
+    let options = [(false, said.off), (true, said.on)];
+    let switch = |ui: &mut Ui, name: &str, is_on: &mut bool| {
+        choice(ui, theme, name, is_on, &options);
+    };
+    let share = |ui: &mut Ui, name: &str, value: &mut f32| {
+        slider(ui, theme, name, value, 0.0, 1.0, 0.05);
+    };
+    card(ui, theme, |ui| {
+        ui.set_width(ui.available_width());
+        let language = &mut chosen.language;
+        choice(ui, theme, said.language, language, &Language::ALL);
+    });
+    section(ui, theme, said.sound_section, |ui| {
+        share(ui, said.volume, &mut chosen.volume);
+        share(ui, said.effects, &mut chosen.effects);
+        share(ui, said.music, &mut chosen.music);
+        share(ui, said.interface, &mut chosen.interface);
+    });
+    section(ui, theme, said.play_section, |ui| {
+        slider(ui, theme, said.speed, &mut chosen.speed, 0.5, 1.0, 0.05);
+        let sensitivity = &mut chosen.sensitivity;
+        slider(ui, theme, said.sensitivity, sensitivity, 0.3, 3.0, 0.1);
+        switch(ui, said.stick_places, &mut chosen.stick_places);
+        switch(ui, said.race_best, &mut chosen.race_best);
+        share(ui, said.haptics, &mut chosen.haptics);
+        let size = vec2(ui.available_width(), 44.0);
+        to_forces = button(ui, theme, said.try_forces, size, ButtonStyle::Other).clicked();
+    });
+    section(ui, theme, said.hands_section, |ui| {
+        switch(ui, said.toggle_keys, &mut chosen.toggle_keys);
+        switch(ui, said.dwell, &mut chosen.dwell);
+        scanning(ui, theme, said, &mut chosen.scanning);
+    });
+    section(ui, theme, said.assists_section, |ui| {
+        for assist in [Assist::WiderBasket, Assist::Unbreakable] {
+            let mut is_on = chosen.assists.contains(&assist);
+            switch(ui, (said.assist)(assist), &mut is_on);
+            match is_on {
+                true => chosen.assists.insert(assist),
+                false => chosen.assists.remove(&assist),
+            };
+        }
+    });
+    section(ui, theme, said.look_section, |ui| {
+        switch(ui, said.full_screen, &mut chosen.full_screen);
+        switch(ui, said.reduced_motion, &mut chosen.reduced_motion);
+        switch(ui, said.colour_safe, &mut chosen.colour_safe);
+        let names = Quality::ALL.map(|quality| (quality, (said.quality_name)(quality)));
+        choice(ui, theme, said.quality, &mut chosen.quality, &names);
+        let text_size = &mut chosen.text_size;
+        slider(ui, theme, said.text_size, text_size, 0.8, 1.6, 0.1);
+    });
+    to_forces
+}
+
+/// Returns the default settings, except for those that a reset keeps.
+fn reset(chosen: Settings) -> Settings {
+    let usual = Settings::default();
+    Settings {
+        language: chosen.language,
+        // A reset never raises the force, and it keeps measured calibrations.
+        haptics: chosen.haptics.min(usual.haptics),
+        calibrations: chosen.calibrations,
+        // A player who needs scanning could not operate the game without it.
+        scanning: chosen.scanning,
+        toggle_keys: chosen.toggle_keys,
+        dwell: chosen.dwell,
+        ..usual
     }
 }
 
