@@ -62,6 +62,11 @@ impl Pace {
         self.cost
     }
 
+    /// Computing time of all ticks of the last frame [s].
+    pub fn spent(&self) -> f64 {
+        self.spent
+    }
+
     /// Reports a played tick and its computing time [s].
     pub fn note(&mut self, cost: f64) {
         self.ticks += 1;

@@ -140,7 +140,7 @@ impl<D: Dim> World<D> {
         self.events.clear();
         let substeps = self.substeps();
         let duration = self.config.tick / substeps as f32;
-        let rounds = self.config.rounds();
+        let rounds = self.config.fracture_rounds_per_tick();
         let mut report = StepReport {
             substeps,
             ..StepReport::default()
@@ -175,8 +175,8 @@ impl<D: Dim> World<D> {
         let longest = self.bodies.iter().map(SoftBody::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
         let required = (f64::from(self.config.tick) / longest - 1e-6).ceil() as u32;
-        let max = self.config.max_in_tick();
-        let usual = self.config.in_tick(60.0 * f64::from(DEFAULT_SUBSTEPS));
+        let max = self.config.max_substeps_per_tick();
+        let usual = self.config.per_tick(60.0 * f64::from(DEFAULT_SUBSTEPS));
         required.clamp(usual.min(max), max)
     }
 
@@ -200,7 +200,7 @@ impl<D: Dim> World<D> {
 
     /// Splits overstrained nodes and remodels the elements around them.
     fn fracture(&mut self, report: &mut StepReport) {
-        let duration = self.config.round();
+        let duration = self.config.fracture_interval();
         for (id, body) in self.bodies.entries_mut() {
             let failures = failures(body, duration);
             if failures.is_empty() {
@@ -223,20 +223,20 @@ impl<D: Dim> World<D> {
     }
 
     /// Damps the internal vibration of each piece, and applies drag.
-    fn damp(&mut self, substep: f32) {
-        let duration = self.config.round();
+    fn damp(&mut self, substep_duration: f32) {
+        let interval = self.config.fracture_interval();
         let touching = self.pieces_in_contact();
         for (slot, body) in self.bodies.by_slot_mut() {
             body.refresh_awake();
             let motions = motions(body);
-            let (_, rate) = body.damping(substep);
+            let (_, rate) = body.damping(substep_duration);
             let damping: Vec<PieceDamping> = motions
                 .iter()
                 .zip(&touching[slot])
                 .map(|(motion, &touches)| {
                     damping_of(motion, touches, rate, self.config.drag, D::CORNERS)
                 })
-                .map(|damping| damping.over(duration))
+                .map(|damping| damping.over(interval))
                 .collect();
             apply_damping(body, &motions, &damping);
         }

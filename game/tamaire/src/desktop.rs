@@ -77,7 +77,9 @@ Exit status: 0 the round was played to its end, won or not; 1 the replay was rej
 pub fn main() -> ExitCode {
     let arguments: Arguments = output::parse();
     if let Some(error) = without_driver_messages(&arguments) {
-        output::warn(format_args!("tamaire: {error}"));
+        output::warn(format_args!(
+            "tamaire: the program cannot start itself again to keep graphics drivers quiet: {error}"
+        ));
     }
     match &arguments.chore {
         Some(Task::Report(options)) => return report::write(options),
@@ -129,7 +131,10 @@ pub fn main() -> ExitCode {
         WindowOutcome::Closed => ExitCode::SUCCESS,
         WindowOutcome::LostGpu => {
             output::warn("tamaire: the GPU was lost; restarting the game");
-            output::warn(format_args!("tamaire: {}", begin_anew()));
+            output::warn(format_args!(
+                "tamaire: the game could not be restarted: {}",
+                begin_anew()
+            ));
             ExitCode::FAILURE
         }
         WindowOutcome::Failed(error) => {

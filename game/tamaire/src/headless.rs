@@ -5,7 +5,7 @@ mod played;
 mod report;
 
 use crate::film::{Film, FilmError};
-use crate::platform::{level_at, replay_in};
+use crate::platform::{OpenRequest, level_at, replay_in};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use force_log::ForceLog;
@@ -24,6 +24,12 @@ use tamaire_play::{Bot, BotKind, Level, Link, Replay, ReplayError};
 const REFUSED: u8 = 1;
 /// Exit status for a request that cannot be carried out. Equal to clap's status for invalid arguments.
 pub const BAD_USAGE: u8 = 2;
+/// Default bot.
+const BOT: &str = "squeeze";
+/// Default seed of the bot.
+const SEED: u64 = 1;
+/// Default time limit of the bot [s].
+const SECONDS: f32 = 60.0;
 /// File extension of replays.
 const REPLAY: &str = "tamaire";
 
@@ -35,15 +41,15 @@ pub struct Options {
     /// the default is classic
     #[arg(long, help_heading = None::<&'static str>, value_name = "NAME or FILE")]
     pub level: Option<PathBuf>,
-    /// Bot that plays
-    #[arg(long, requires = "headless", default_value = "squeeze", value_parser = PossibleValuesParser::new(BotKind::NAMED.map(|(name, _)| name)))]
-    pub bot: String,
-    /// Random seed of the bot. The same seed gives the same round
-    #[arg(long, requires = "headless", default_value_t = 1)]
-    pub seed: u64,
-    /// Time limit of the bot, in seconds of game time
-    #[arg(long, requires = "headless", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
-    pub seconds: f32,
+    /// Bot that plays. The default is squeeze
+    #[arg(long, requires = "headless", value_parser = PossibleValuesParser::new(BotKind::NAMED.map(|(name, _)| name)))]
+    pub bot: Option<String>,
+    /// Random seed of the bot. The same seed gives the same round. The default is 1
+    #[arg(long, requires = "headless")]
+    pub seed: Option<u64>,
+    /// Time limit of the bot, in seconds of game time. The default is 60
+    #[arg(long, requires = "headless", value_parser = seconds, allow_negative_numbers = true)]
+    pub seconds: Option<f32>,
     /// Play a replay (.tamaire) instead of a bot, and check whether it is genuine
     #[arg(long, requires = "headless", value_name = "FILE", conflicts_with_all = ["level", "bot", "seed", "seconds"])]
     pub replay: Option<PathBuf>,
@@ -63,16 +69,30 @@ pub struct Options {
     /// Print the result as JSON
     #[arg(long, requires = "headless")]
     pub json: bool,
+    /// Level, replay or link that was given without an option. Its content decides which it is.
+    #[arg(skip)]
+    pub file: Option<PathBuf>,
 }
 
 impl Options {
     /// Returns the options with the level or replay in `file`, which may be a link.
     pub fn with_file(mut self, file: &Path) -> Self {
-        match file.extension() {
-            Some(ending) if ending == REPLAY => self.replay = Some(file.into()),
-            _ => self.level = Some(file.into()),
-        }
+        self.file = Some(file.into());
         self
+    }
+
+    /// Returns the first option among those that need a bot, if one was given.
+    fn option_of_bots(&self) -> Option<&'static str> {
+        let given = [
+            ("save", self.save.is_some()),
+            ("bot", self.bot.is_some()),
+            ("seed", self.seed.is_some()),
+            ("seconds", self.seconds.is_some()),
+        ];
+        given
+            .iter()
+            .find(|(_, is_given)| *is_given)
+            .map(|(name, _)| *name)
     }
 }
 
@@ -89,7 +109,7 @@ enum HeadlessError {
     Film(#[from] FilmError),
     #[error("{0}")]
     Link(#[from] LinkError),
-    #[error("--{0} cannot be used with a link to a round, which plays a replay")]
+    #[error("--{0} cannot be used with a replay, because no bot plays")]
     Replayed(&'static str),
     #[error("{0}")]
     Output(io::Error),
@@ -135,19 +155,31 @@ fn failed(trouble: &dyn Error) -> ExitCode {
 
 /// Plays a round of a bot or a replay, writes its files and prints its report.
 fn try_play(options: &Options) -> Result<(), HeadlessError> {
-    let told = match (&options.replay, &options.level) {
-        (Some(path), _) => check(path, read_replay(path)?, options),
-        (None, Some(place)) if is_link_argument(place) => {
-            match Link::read(&place.to_string_lossy())? {
-                Link::Level(level) => try_bot(level, options),
-                Link::Round(_) if options.save.is_some() => Err(HeadlessError::Replayed("save")),
-                Link::Round(replay) => check(Path::new("the link"), replay, options),
+    let told = match (&options.file, &options.replay, &options.level) {
+        (Some(file), ..) => match OpenRequest::at(file) {
+            OpenRequest::Link(link) => try_link(&link, options),
+            OpenRequest::Level(level) => try_bot(*level?, options),
+            OpenRequest::Replay(_, replay) => {
+                let replay = replay.map_err(|error| not_read(file, error))?;
+                check(file, *replay, options)
             }
+        },
+        (None, Some(path), _) => check(path, read_replay(path)?, options),
+        (None, None, Some(place)) if is_link_argument(place) => {
+            try_link(&place.to_string_lossy(), options)
         }
-        (None, Some(place)) => try_bot(level_at(place)?, options),
-        (None, None) => try_bot(Level::open(NAMED[0].0)?, options),
+        (None, None, Some(place)) => try_bot(level_at(place)?, options),
+        (None, None, None) => try_bot(Level::open(NAMED[0].0)?, options),
     }?;
     output::print(&told).map_err(HeadlessError::Output)
+}
+
+/// Plays the round or the level in a link, and returns the report.
+fn try_link(link: &str, options: &Options) -> Result<String, HeadlessError> {
+    match Link::read(link)? {
+        Link::Level(level) => try_bot(level, options),
+        Link::Round(replay) => check(Path::new("the link"), replay, options),
+    }
 }
 
 /// Returns whether an argument is a link to a round or a level. A file with this name takes precedence.
@@ -185,10 +217,12 @@ fn try_bot(level: Level, options: &Options) -> Result<String, HeadlessError> {
         can_be_written(path)?;
     }
     let mut log = force_log(options)?;
-    let named = BotKind::NAMED.iter().find(|(name, _)| *name == options.bot);
+    let bot = options.bot.as_deref().unwrap_or(BOT);
+    let named = BotKind::NAMED.iter().find(|(name, _)| *name == bot);
     let (_, kind) = named.expect("clap accepts only names in BotKind::NAMED");
-    let most = (options.seconds * RATE) as u64;
-    let played = of_bot(level, Bot::new(*kind, options.seed), most, &mut log);
+    let seed = options.seed.unwrap_or(SEED);
+    let most = (options.seconds.unwrap_or(SECONDS) * RATE) as u64;
+    let played = of_bot(level, Bot::new(*kind, seed), most, &mut log);
     if let Some(path) = &options.save {
         let text = played.round.replay().text_to_keep();
         let text =
@@ -196,8 +230,8 @@ fn try_bot(level: Level, options: &Options) -> Result<String, HeadlessError> {
         write(path, text.as_bytes())?;
     }
     let by = report::Player::Bot {
-        bot: options.bot.clone(),
-        seed: options.seed,
+        bot: bot.into(),
+        seed,
     };
     let told = tell(&played, by, options)?;
     finish(log, options)?;
@@ -206,17 +240,25 @@ fn try_bot(level: Level, options: &Options) -> Result<String, HeadlessError> {
 
 /// Reads a replay from a file.
 fn read_replay(path: &Path) -> Result<Replay, HeadlessError> {
-    replay_in(path).map_err(|error| match error {
+    replay_in(path).map_err(|error| not_read(path, error))
+}
+
+/// Converts the error of reading a replay from a file.
+fn not_read(path: &Path, error: ReplayError) -> HeadlessError {
+    match error {
         ReplayError::Unreadable(reason) => HeadlessError::file(path, io::Error::other(reason)),
         reason => HeadlessError::Replay {
             path: path.into(),
             reason,
         },
-    })
+    }
 }
 
 /// Plays a replay, checks that it is genuine, and returns the report. `path` names the replay.
 fn check(path: &Path, replay: Replay, options: &Options) -> Result<String, HeadlessError> {
+    if let Some(option) = options.option_of_bots() {
+        return Err(HeadlessError::Replayed(option));
+    }
     for path in pictures(options) {
         can_be_written(path)?;
     }

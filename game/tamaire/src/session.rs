@@ -106,6 +106,24 @@ impl Session {
         }
     }
 
+    /// Whether a replay is being wound.
+    pub fn is_winding(&self) -> bool {
+        matches!(&self.player, Player::Replay(reel) if reel.is_winding())
+    }
+
+    /// Returns the start of the round that is replayed. `None` if people play the round.
+    pub fn start(&self) -> Option<&AnyRound> {
+        match &self.player {
+            Player::People(_) => None,
+            Player::Replay(reel) => Some(reel.start()),
+        }
+    }
+
+    /// Computing time of all ticks of the last frame [s].
+    pub fn time_in_ticks(&self) -> f64 {
+        self.pace.spent()
+    }
+
     /// Returns the error that stopped a replay or a ghost, once.
     pub fn take_complaint(&mut self) -> Option<ReplayError> {
         self.complaint.take()
@@ -175,8 +193,8 @@ impl Session {
 /// first push when the player began catches up at this rate.
 const CATCH_UP: usize = 4;
 
-/// Lets a ghost play until its clock shows `clock` ticks, at most [`CATCH_UP`] ticks at a time. As long as the
-/// player has not begun, the ghost waits before its first push.
+/// Lets a ghost play until its clock shows `clock` ticks, at most [`CATCH_UP`] ticks at a time. Until the
+/// player's first push, the ghost plays up to, but not including, its own.
 fn race(ghost: &mut Playback, clock: u64) -> Result<(), ReplayError> {
     if clock == 0 && !ghost.starts_clock_next() {
         return ghost.step();

@@ -334,6 +334,45 @@ fn invalid_arguments_are_refused_with_reason() {
     );
 }
 
+/// The content of a file decides whether it is a level or a replay, not its name.
+#[test]
+fn content_of_a_file_decides_what_is_played() {
+    let folder = folder();
+    let line = "--headless --level far.toml --bot random --seconds 1 --save it.tamaire --json";
+    let played = json_of(folder.path(), line);
+    let path = |name: &str| folder.path().join(name);
+    fs::copy(path("it.tamaire"), path("replay.txt")).unwrap();
+    fs::copy(path("far.toml"), path("level.tamaire")).unwrap();
+    for name in ["it.tamaire", "replay.txt"] {
+        let told = json_of(folder.path(), &format!("--headless {name} --json"));
+        assert_eq!(told["genuine"], true, "{name}");
+        assert_eq!(told["hash"], played["hash"], "{name}");
+    }
+    let line = "--headless level.tamaire --json --bot idle --seconds 1";
+    assert_eq!(json_of(folder.path(), line)["level"], "level.tamaire");
+}
+
+#[test]
+fn options_of_bots_are_refused_with_a_replay() {
+    let folder = folder();
+    let line = "--headless --level far.toml --bot idle --seconds 1 --save it.tamaire";
+    assert_eq!(tamaire(folder.path(), line).status.code(), Some(0));
+    for (option, value) in [
+        ("save", "copy.tamaire"),
+        ("bot", "squeeze"),
+        ("seed", "1"),
+        ("seconds", "60"),
+    ] {
+        let line = format!("--headless it.tamaire --{option} {value}");
+        let output = tamaire(folder.path(), &line);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}: {said}");
+        let reason = format!("--{option} cannot be used with a replay");
+        assert!(said.contains(&reason), "{line}: {said}");
+        assert!(!folder.path().join("copy.tamaire").exists(), "{line}");
+    }
+}
+
 /// Runs the game with arguments that may contain spaces.
 fn tamaire_args(folder: &Path, arguments: &[&std::ffi::OsStr]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_tamaire"))
@@ -400,7 +439,7 @@ fn links_are_played_without_a_window() {
     }
 }
 
-/// Each reason is one for which a file is there, or none: the message names it and no other.
+/// Each case has a file that cannot be opened, or no file. The message names exactly that cause.
 #[cfg(target_os = "linux")]
 #[test]
 fn file_that_cannot_be_opened_is_refused_with_its_reason() {

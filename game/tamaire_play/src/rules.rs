@@ -74,10 +74,17 @@ impl Outcome {
 
     /// Returns whether the outcome meets a wish of the level.
     pub fn fulfils(&self, wish: &Wish) -> bool {
-        wish.seconds.is_none_or(|most| self.seconds() <= most)
-            && wish.kept.is_none_or(|least| self.kept >= least)
-            && wish.pieces.is_none_or(|least| self.pieces >= least)
-            && wish.route.is_none_or(|route| self.route == route)
+        self.misses(wish) == Wish::default()
+    }
+
+    /// Returns the conditions of a wish that the outcome does not meet. The fields of met conditions are `None`.
+    pub fn misses(&self, wish: &Wish) -> Wish {
+        Wish {
+            seconds: wish.seconds.filter(|most| self.seconds() > *most),
+            kept: wish.kept.filter(|least| self.kept < *least),
+            pieces: wish.pieces.filter(|least| self.pieces < *least),
+            route: wish.route.filter(|route| self.route != *route),
+        }
     }
 }
 

@@ -60,29 +60,29 @@ impl<D: Dim> Default for WorldConfig<D> {
 
 impl<D: Dim> WorldConfig<D> {
     /// Converts a rate [1/s] to a whole number of repetitions per tick, at least 1.
-    pub(super) fn in_tick(&self, per_second: f64) -> u32 {
+    pub(super) fn per_tick(&self, per_second: f64) -> u32 {
         ((f64::from(self.tick) * per_second + 0.5) as u32).max(1)
     }
 
     /// Returns how often per tick fracture is tested and damping is applied.
-    pub(super) fn rounds(&self) -> u32 {
-        self.in_tick(ROUNDS)
+    pub(super) fn fracture_rounds_per_tick(&self) -> u32 {
+        self.per_tick(ROUNDS)
     }
 
     /// Returns the time between two tests for fracture, which is also the time between two applications of
     /// damping [s].
-    pub(super) fn round(&self) -> f32 {
-        self.tick / self.rounds() as f32
+    pub(super) fn fracture_interval(&self) -> f32 {
+        self.tick / self.fracture_rounds_per_tick() as f32
     }
 
     /// Returns the maximum number of substeps per tick.
-    pub(super) fn max_in_tick(&self) -> u32 {
-        self.in_tick(60.0 * f64::from(self.max_substeps))
+    pub(super) fn max_substeps_per_tick(&self) -> u32 {
+        self.per_tick(60.0 * f64::from(self.max_substeps))
     }
 
     /// Returns the shortest allowed substep [s]; bodies that require a shorter one are softened.
     pub(super) fn shortest_substep(&self) -> f64 {
-        f64::from(self.tick) / f64::from(self.max_in_tick())
+        f64::from(self.tick) / f64::from(self.max_substeps_per_tick())
     }
 
     pub(super) fn check(&self) -> Result<(), Error> {

@@ -45,7 +45,7 @@ impl<D: Dim> World<D> {
     /// cuts.
     #[inline(never)]
     pub(super) fn cut_along_edges(&mut self, report: &mut StepReport) {
-        let round = self.config.round();
+        let round = self.config.fracture_interval();
         for (id, knife) in self.knives.entries_mut() {
             let Ok(holder) = self.rigids.get(knife.holder) else {
                 continue;
@@ -81,7 +81,7 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub(super) fn solve_knife_contacts(&mut self, duration: f32) -> Vec<Hit> {
         let mut woken = Vec::new();
-        let round = self.config.round();
+        let round = self.config.fracture_interval();
         for knife in self.knives.iter_mut() {
             let Ok(holder) = self.rigids.get(knife.holder) else {
                 knife.forget();

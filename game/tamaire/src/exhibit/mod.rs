@@ -97,8 +97,8 @@ pub struct Stand {
     since: f32,
     /// Time for which the result has been shown [s].
     result_since: f32,
-    /// Whether nothing has been held since the current screen settled. A press that began before then chooses
-    /// nothing.
+    /// Whether nothing has been held since the current screen settled. Presses that began earlier are
+    /// ignored.
     is_released: bool,
     file: TextFile,
     /// Logbook and other storage.
@@ -292,6 +292,7 @@ impl Stand {
         self.attention = Attention::There;
         self.freshen(game);
         self.visit = Some(Visit::begin());
+        game.forget_slow_drawing();
         match self.config.levels.0.len() {
             1 => self.choose(game, 0),
             _ => self.phase = Phase::Choice,

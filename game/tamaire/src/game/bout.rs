@@ -37,6 +37,8 @@ pub struct CurrentRound {
     pub(super) lesson: Tutorial,
     /// Whether the round has been added to [`PublicMode::ended`](super::PublicMode::ended).
     pub(super) is_noted: bool,
+    /// Number of the last look at the pieces in this round, and whether the round was hopeless then.
+    pub(crate) hopeless: Option<(u64, bool)>,
     /// Whether the player was told that this machine is too slow for the round.
     pub(super) is_known_slow: bool,
     /// Time since the round was won, or on the title screen since it ended [s].
@@ -45,7 +47,7 @@ pub struct CurrentRound {
 
 impl CurrentRound {
     /// Creates the state of a new round.
-    pub(super) fn new(session: Session) -> Self {
+    pub(crate) fn new(session: Session) -> Self {
         Self {
             session,
             is_ghost_chosen: false,
@@ -60,13 +62,14 @@ impl CurrentRound {
             won: None,
             lesson: Tutorial::default(),
             is_noted: false,
+            hopeless: None,
             is_known_slow: false,
             cheered: 0.0,
         }
     }
 
     /// Replaces the round and keeps the camera. `time` is the time since the start of the game [s].
-    pub(super) fn begin(&mut self, session: Session, time: f64) {
+    pub(crate) fn begin(&mut self, session: Session, time: f64) {
         let has_failed = self.is_given_up_for(&session);
         self.session = session;
         self.is_ghost_chosen = false;
@@ -80,6 +83,7 @@ impl CurrentRound {
         self.view = None;
         self.won = None;
         self.is_noted = false;
+        self.hopeless = None;
         self.is_known_slow = false;
         self.cheered = 0.0;
     }

@@ -13,13 +13,25 @@ const INTERRUPTED: f32 = 0.5;
 /// Speed of the simulation below which the simulation counts as the slow part, as a share of real time.
 const SIMULATED: f64 = 0.8;
 
+/// Duration of a frame from which slow drawing is told if the quality is chosen [s]. A display with 30 frames per
+/// second does not reach it.
+const TOLD: f32 = 0.036;
+/// Duration of a frame after a lower quality, relative to the one before, up to which the lower quality has helped.
+const HELPS: f32 = 0.95;
+
 /// Watch over the duration of frames.
 #[derive(Clone, Debug)]
 pub struct DrawingWatch {
-    /// Durations of the last frames [s].
+    /// Durations of the last frames, without the time in ticks [s].
     frames: Vec<f32>,
     /// Quality that was reached by lowering it automatically.
     reached: Quality,
+    /// Quality before the last step and the usual duration of a frame with it [s], until it is known whether the
+    /// step has helped.
+    trial: Option<(Quality, f32)>,
+    /// Whether a step did not help. The frames are then slow for another reason, for example because the display
+    /// shows 30 frames per second.
+    is_useless: bool,
     /// Whether the player was told that drawing is slow.
     is_told: bool,
 }
@@ -29,6 +41,8 @@ impl Default for DrawingWatch {
         Self {
             frames: Vec::new(),
             reached: Quality::High,
+            trial: None,
+            is_useless: false,
             is_told: false,
         }
     }
@@ -40,19 +54,38 @@ impl DrawingWatch {
         self.frames.clear();
     }
 
-    /// Adds the duration of a frame [s]. Returns whether drawing is slow, as soon as this is known.
-    fn note(&mut self, seconds: f32) -> bool {
+    /// Adds the duration of a frame [s]. Returns the median of the last [`FRAMES`] frames [s] as soon as there are
+    /// enough of them.
+    fn note(&mut self, seconds: f32) -> Option<f32> {
         if seconds >= INTERRUPTED {
-            return false;
+            return None;
         }
         self.frames.push(seconds);
         if self.frames.len() < FRAMES {
-            return false;
+            return None;
         }
         self.frames.sort_by(f32::total_cmp);
         let median = self.frames[FRAMES / 2];
         self.forget();
-        median > SLOW
+        Some(median)
+    }
+
+    /// Lowers the quality by a step if frames take `median` [s], and takes back a step that did not help. Returns
+    /// whether a lower quality has helped.
+    fn adapt(&mut self, median: f32) -> bool {
+        let trial = self.trial.take();
+        if let Some((quality, before)) = trial
+            && median > HELPS * before
+        {
+            self.reached = quality;
+            self.is_useless = true;
+            return false;
+        }
+        if median > SLOW && !self.is_useless && self.reached != Quality::Low {
+            self.trial = Some((self.reached, median));
+            self.reached = self.reached.lower();
+        }
+        trial.is_some()
     }
 }
 
@@ -65,23 +98,31 @@ impl Game {
         }
     }
 
+    /// Returns to the highest automatic quality, for a new visitor of a stand.
+    pub fn forget_slow_drawing(&mut self) {
+        self.drawing = DrawingWatch::default();
+    }
+
     /// Notes the time from one frame to the next [s]: everything from input to picture. If frames of a round
-    /// usually take too long, lowers the picture quality by a step unless the player has chosen it, and tells
-    /// the player once.
+    /// usually take too long, even without the ticks, lowers the picture quality by a step unless the player has
+    /// chosen it. Tells the player once, as soon as a step has helped.
     pub fn note_frame(&mut self, seconds: f32) {
-        let is_simulation_slow = self.bout.session.bearable() < SIMULATED;
-        if self.screen() != Screen::Play || self.is_away || is_simulation_slow {
+        let bout = &self.bout;
+        let is_simulation_slow = bout.session.bearable() < SIMULATED;
+        let is_fast = !bout.session.is_played() && bout.watch_speed > 1.0;
+        let is_unusual = bout.session.is_winding() || bout.stepping || is_fast;
+        if self.screen() != Screen::Play || self.is_away || is_simulation_slow || is_unusual {
             return self.drawing.forget();
         }
-        if !self.drawing.note(seconds) {
+        let drawing = seconds - bout.session.time_in_ticks() as f32;
+        let Some(median) = self.drawing.note(drawing) else {
             return;
-        }
-        let text = match self.settings.quality {
-            Quality::Automatic => {
-                self.drawing.reached = self.drawing.reached.lower();
-                self.words().quality_lowered
-            }
-            _ => self.words().drawing_slow,
+        };
+        let is_automatic = self.settings.quality == Quality::Automatic;
+        let text = match is_automatic {
+            true if self.drawing.adapt(median) => self.words().quality_lowered,
+            false if median > TOLD => self.words().drawing_slow,
+            _ => return,
         };
         // Visitors of a stand cannot change the settings.
         if !self.drawing.is_told && self.public.is_none() {
@@ -110,13 +151,51 @@ mod tests {
         (game.quality(), game.notices.iter().count())
     }
 
+    /// Draws `count` frames whose duration depends on the quality: a full picture takes `full` seconds more than
+    /// an empty one, which takes 10 ms.
+    fn draw_by_quality(game: &mut Game, count: usize, full: f32) -> (Quality, usize) {
+        for _ in 0..count {
+            let share = game.quality().resolution();
+            game.note_frame(0.01 + full * share * share);
+        }
+        (game.quality(), game.notices.iter().count())
+    }
+
     #[test]
     fn slow_drawing_lowers_quality_by_steps_and_is_told_once() {
         let mut game = game();
         assert_eq!(draw(&mut game, 400, 1.0 / 60.0), (Quality::High, 0));
-        assert_eq!(draw(&mut game, FRAMES, 0.04), (Quality::Medium, 1));
-        assert_eq!(draw(&mut game, FRAMES, 0.04), (Quality::Low, 1));
-        assert_eq!(draw(&mut game, 400, 0.04), (Quality::Low, 1));
+        // The last 40 of these frames count towards the next median.
+        game.drawing.forget();
+        let mut draw = |count| draw_by_quality(&mut game, count, 0.08);
+        assert_eq!(draw(FRAMES), (Quality::Medium, 0), "a trial");
+        assert_eq!(draw(FRAMES), (Quality::Low, 1));
+        assert_eq!(draw(400), (Quality::Low, 1));
+        let told = game.notices.iter().next().unwrap().text.clone();
+        assert_eq!(told, game.words().quality_lowered);
+        game.forget_slow_drawing();
+        assert_eq!(game.quality(), Quality::High, "a new visit");
+    }
+
+    #[test]
+    fn step_that_does_not_help_is_taken_back() {
+        // A display with 30 frames per second, and a slow one.
+        for seconds in [1.0 / 30.0, 0.04] {
+            let mut game = game();
+            assert_eq!(draw(&mut game, FRAMES, seconds), (Quality::Medium, 0));
+            assert_eq!(draw(&mut game, FRAMES, seconds), (Quality::High, 0));
+            assert_eq!(draw(&mut game, 900, seconds), (Quality::High, 0));
+        }
+    }
+
+    #[test]
+    fn frames_of_fast_replays_are_not_measured() {
+        let mut game = game();
+        (0..5).for_each(|_| game.update(0.02));
+        let replay = game.bout.round().replay();
+        game.watch(replay.into()).unwrap();
+        game.bout.watch_speed = 4.0;
+        assert_eq!(draw(&mut game, 400, 0.04), (Quality::High, 0));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use super::{Game, Screen};
 use crate::platform::{Damage, Entry, Kind, StorageEvent};
+use std::path::Path;
 use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
 
@@ -70,7 +71,7 @@ impl Game {
     }
 
     /// Opens the folder of the file saved at `location` in the system's file manager.
-    pub fn open_folder_of(&mut self, location: &str) {
+    pub fn open_folder_of(&mut self, location: &Path) {
         if let Err(error) = self.files.open_folder_of(location) {
             self.notify(format!("{} {error}", self.words().folder_not_opened));
         }
@@ -92,7 +93,7 @@ impl Game {
             StorageEvent::Damaged(damage) => self.tell_of(damage),
             StorageEvent::Saved(location) => {
                 self.shelf.refresh(&self.files);
-                let text = format!("{} {location}", self.words().saved);
+                let text = format!("{} {}", self.words().saved, location.display());
                 // The system's file manager cannot be operated with a single switch.
                 match self.files.has_folders() && !self.settings.scanning.is_on() {
                     true => self.notices.tell_of_saved(&text, location),

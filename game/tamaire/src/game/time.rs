@@ -2,10 +2,10 @@
 
 use super::{Controls, CurrentRound, Game, Screen, heard};
 use crate::haptics;
-use crate::input::{Hands, InputMapping};
+use crate::input::{Bindings, Devices, Hands, InputMapping, Players};
 use crate::settings::Quality;
 use fuwafuwa::{DEFAULT_TICK, Vec3};
-use tamaire_play::{InputFrame, PLAYERS};
+use tamaire_play::{AnyRound, InputFrame, PLAYERS};
 use tamaire_sound::Cue;
 
 /// Speed of slow motion, relative to normal speed.
@@ -16,7 +16,9 @@ impl Game {
     pub fn update(&mut self, seconds: f32) {
         self.time += f64::from(seconds);
         self.notices.pass(seconds);
-        let runs = self.is_seen() && self.screen() != Screen::Paused && !self.bout.stepping;
+        let was_winding = self.bout.session.is_winding();
+        let is_paused = self.screen() == Screen::Paused || (self.bout.stepping && !was_winding);
+        let runs = self.is_seen() && !is_paused;
         let is_watched = self.screen() == Screen::Play && !self.bout.session.is_played();
         let watch_speed = if is_watched {
             self.bout.watch_speed
@@ -28,6 +30,9 @@ impl Game {
         if runs {
             self.pass_ticks(seconds * pace);
             self.bout.effects.advance(seconds * pace);
+        }
+        if was_winding && !self.bout.session.is_winding() {
+            self.show_wound();
         }
         if let Some(complaint) = self.bout.session.take_complaint() {
             self.notify((self.words().replay_error)(&complaint));
@@ -79,7 +84,7 @@ impl Game {
             arena: self.bout.round().level().arena(),
             turn: self.bout.turn(),
         };
-        let still = self.settings.reduced_motion || self.quality() == Quality::Low;
+        let still = self.is_still();
         // Keys and sticks move the hand only during a round; in menus they move the focus. After a win, input
         // is ignored so that the body is not torn any more.
         let is_won = self.bout.round().progress().outcome.is_some();
@@ -100,7 +105,6 @@ impl Game {
             },
             settings,
             sound,
-            forces,
             clock,
             ..
         } = self;
@@ -112,20 +116,7 @@ impl Game {
                 if !in_round {
                     return InputFrame::default();
                 }
-                // A player who joins now begins at the start position of the level.
-                let hands = round.level().scene().hand.iter();
-                let starts = hands.map(|hand| Vec3::from(hand.target(0.0)));
-                let mut targets: Vec<Vec3> = starts.collect();
-                for (target, hand) in targets.iter_mut().zip(round.hands()) {
-                    *target = hand.target;
-                }
-                let bindings = &settings.bindings;
-                let hands = Hands {
-                    targets: &targets,
-                    radius: round.hands()[0].radius,
-                    distance_to_bodies: &|position| round.distance_to_bodies(position),
-                };
-                let frame = players.frame(devices, bindings, &manner, &hands, DEFAULT_TICK);
+                let frame = input_for(round, players, devices, &settings.bindings, &manner);
                 // Clears the height by which the player has scrolled. Scrolling then counts once, however
                 // many ticks are played in this frame.
                 devices.lift = 0.0;
@@ -144,15 +135,32 @@ impl Game {
         if is_heard {
             devices.pointer = None;
         }
-        for (player, size) in tears
-            .into_iter()
-            .enumerate()
-            .filter(|(_, size)| *size > 0.0)
-        {
-            if let Some(device) = players.device_of(player).filter(|_| in_round) {
-                forces.tear(device, size);
+        if in_round {
+            self.feel_tears(tears);
+        }
+    }
+
+    /// Lets the stick or pad of each player feel the tears of the last ticks. `tears` are their sizes.
+    fn feel_tears(&mut self, tears: [f32; PLAYERS]) {
+        let tears = tears.into_iter().enumerate();
+        for (player, size) in tears.filter(|(_, size)| *size > 0.0) {
+            if let Some(device) = self.controls.players.device_of(player) {
+                self.forces.tear(device, size);
             }
         }
+    }
+
+    /// Shows the bodies as they are after a replay was wound, before the next tick.
+    fn show_wound(&mut self) {
+        let still = self.is_still();
+        let bout = &mut self.bout;
+        bout.effects
+            .process_tick(bout.session.round(), &mut bout.camera, still);
+    }
+
+    /// Whether effects are reduced, by choice or because drawing is slow.
+    fn is_still(&self) -> bool {
+        self.settings.reduced_motion || self.quality() == Quality::Low
     }
 
     /// Tells the player once if the machine is too slow for the round. The speed is known after two seconds.
@@ -198,6 +206,29 @@ impl Game {
             self.go(Screen::Result);
         }
     }
+}
+
+/// Returns the input of the players for the next tick of a round.
+fn input_for(
+    round: &AnyRound,
+    players: &mut Players,
+    devices: &Devices,
+    bindings: &Bindings,
+    manner: &InputMapping,
+) -> InputFrame {
+    // A player who joins now begins at the start position of the level.
+    let hands = round.level().scene().hand.iter();
+    let starts = hands.map(|hand| Vec3::from(hand.target(0.0)));
+    let mut targets: Vec<Vec3> = starts.collect();
+    for (target, hand) in targets.iter_mut().zip(round.hands()) {
+        *target = hand.target;
+    }
+    let hands = Hands {
+        targets: &targets,
+        radius: round.hands()[0].radius,
+        distance_to_bodies: &|position| round.distance_to_bodies(position),
+    };
+    players.frame(devices, bindings, manner, &hands, DEFAULT_TICK)
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ impl Game {
         {
             bout.session.wind_to(tick);
             // The effects belong to the moment before.
-            bout.effects = Effects::default();
+            bout.effects = { bout.session.start() }.map_or_else(Effects::default, Effects::resumed);
             bout.cheered = 0.0;
         }
     }
@@ -79,6 +79,19 @@ mod tests {
         game.start(0);
         (0..60).for_each(|_| game.update(DEFAULT_TICK));
         assert!(tick(&game) <= 60, "{}", tick(&game));
+    }
+
+    #[test]
+    fn replay_can_be_wound_in_single_steps() {
+        let mut game = watched(400);
+        game.bout.stepping = true;
+        game.wind_to(300);
+        game.update(DEFAULT_TICK);
+        assert_eq!(tick(&game), 300);
+        // The faces of the bodies are there before the next step.
+        assert_eq!(game.bout.effects.feelings.len(), 1);
+        game.update(DEFAULT_TICK);
+        assert_eq!(tick(&game), 300, "single steps go on");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use app_shell::direction::to_world;
 use egui::Vec2;
 use fuwafuwa::Vec3;
 use std::collections::BTreeMap;
-use sticks::DeviceId;
+use sticks::{Device, DeviceId};
 use tamaire_play::{InputFrame, PLAYERS};
 
 /// Change of a stick's position below which the stick counts as still (full deflection = 1).
@@ -26,6 +26,11 @@ const GRASP: f32 = 1.2;
 /// Gap that a hand keeps from the soft bodies until it is picked up [m].
 const GAP: f32 = 0.03;
 
+/// Speed of bodies up to which a gliding hand keeps its distance from them between two looks [m/s].
+const RUSH: f32 = 3.0;
+/// Maximum interval between two looks of a gliding hand at the bodies [ticks].
+const LOOK: u8 = 5;
+
 /// Angles to the straight way that a gliding hand tries in turn, to get around bodies [rad].
 const AROUND: [f32; 7] = [0.0, 0.5, -0.5, 1.0, -1.0, 1.45, -1.45];
 
@@ -36,7 +41,7 @@ pub struct Hands<'a> {
     pub targets: &'a [Vec3],
     /// Radius of a hand [m].
     pub radius: f32,
-    /// Distance from a position to the nearest soft body [m].
+    /// Distance from a position to the nearest node of a soft body [m]. Slow: it visits all nodes.
     pub distance_to_bodies: &'a dyn Fn(Vec3) -> f32,
 }
 
@@ -50,6 +55,8 @@ pub struct Players {
     is_picked_up: [bool; PLAYERS],
     /// Position to which a hand that was not picked up yet glides.
     aims: [Option<Aim>; PLAYERS],
+    /// Result of each gliding hand's last look at the bodies.
+    looks: [Option<Look>; PLAYERS],
     /// Goal that each player requests [m]. The hand and its target position may be far from this goal, for
     /// example behind an obstacle.
     goals: [Option<Vec3>; PLAYERS],
@@ -76,6 +83,17 @@ impl Aim {
         let is_seen = true;
         Self { position, is_seen }
     }
+}
+
+/// What a gliding hand has seen of the bodies. It holds for some ticks.
+#[derive(Copy, Clone, Debug)]
+struct Look {
+    /// Position to which the hand glided [m].
+    aim: Vec3,
+    /// Whether the straight way is free. Otherwise no way was free, and the hand waits.
+    is_free: bool,
+    /// Number of ticks for which this holds.
+    ticks: u8,
 }
 
 /// Requests of a player's devices in a tick.
@@ -161,6 +179,8 @@ impl Players {
         }
         let is_here = |id: &DeviceId| devices.sticks.device(*id).is_some();
         self.leans.retain(|id, _| is_here(id));
+        // In a level with a single hand, all devices move this hand.
+        let second = self.second.filter(|_| hands.targets.len() > 1);
         let mut frame = InputFrame::default();
         for player in 0..PLAYERS {
             if player == 1 && self.second.is_none() {
@@ -172,7 +192,7 @@ impl Players {
                 continue;
             };
             self.rested[player] += seconds;
-            let asked = self.asked(player, devices, bindings, manner, here);
+            let asked = self.asked(player, second, devices, bindings, manner, here);
             self.move_goal(player, asked, manner, here, hands, seconds);
             if let Some(goal) = self.goals[player].or((player == 1).then_some(here)) {
                 frame = frame.with(player, goal);
@@ -196,7 +216,10 @@ impl Players {
         }
         let mut goal = match self.aims[player] {
             Some(aim) => Some(self.approach(player, aim, [here, wanted], manner, hands, seconds)),
-            None => self.goals[player],
+            None => {
+                self.looks[player] = None;
+                self.goals[player]
+            }
         };
         if asked.lean != Vec2::ZERO {
             // Starts from the hand's current target position instead of the requested goal, so that pushing
@@ -214,6 +237,8 @@ impl Players {
             let mut position = goal.unwrap_or(here);
             position.y = raised(position.y, here.y, asked.wheel, lift);
             goal = Some(manner.clamp_to_arena(position));
+            // At another height, other bodies may be near.
+            self.looks[player] = None;
         }
         self.goals[player] = goal;
     }
@@ -256,7 +281,27 @@ impl Players {
         if !is_seen {
             return here + step;
         }
-        let least = (hands.distance_to_bodies)(here).min(hands.radius + GAP);
+        if let Some(look) = &mut self.looks[player]
+            && look.ticks > 0
+            && (look.is_free || look.aim == aim)
+        {
+            look.ticks -= 1;
+            return if look.is_free { here + step } else { here };
+        }
+        let near = (hands.distance_to_bodies)(here);
+        // For so many ticks neither the hand nor a body can close the gap.
+        let ticks = (near - hands.radius - GAP) / ((GLIDE + RUSH) * seconds);
+        if ticks >= 1.0 {
+            let ticks = (ticks as u8).min(LOOK) - 1;
+            let is_free = true;
+            self.looks[player] = Some(Look {
+                aim,
+                is_free,
+                ticks,
+            });
+            return here + step;
+        }
+        let least = near.min(hands.radius + GAP);
         let is_free = |next: &Vec3| {
             let is_nearer = (aim - next).length() < (aim - here).length();
             is_nearer && (hands.distance_to_bodies)(*next) >= least
@@ -264,12 +309,19 @@ impl Players {
         let mut steps = AROUND
             .iter()
             .map(|&angle| here + manner.turned(step, angle));
-        steps.find(is_free).unwrap_or(here)
+        let found = steps.find(is_free);
+        self.looks[player] = found.is_none().then_some(Look {
+            aim,
+            is_free: false,
+            ticks: LOOK - 1,
+        });
+        found.unwrap_or(here)
     }
 
-    /// Returns the part of the keyboard that moves the hand of a player.
-    fn keyboard_of(&self, player: usize) -> Option<KeyboardPart> {
-        match (player, self.second) {
+    /// Returns the part of the keyboard that moves the hand of a player. `second` is the input source of the second
+    /// player.
+    fn keyboard_of(player: usize, second: Option<InputSource>) -> Option<KeyboardPart> {
+        match (player, second) {
             (0, Some(InputSource::Keys)) => None,
             (0, Some(InputSource::LetterKeys)) => Some(KeyboardPart::Arrows),
             (0, _) | (1, Some(InputSource::Keys)) => Some(KeyboardPart::Whole),
@@ -278,23 +330,24 @@ impl Players {
         }
     }
 
-    /// Collects the requests of a player's devices. `here` is the target position of the player's hand [m].
+    /// Collects the requests of a player's devices. `second` is the input source of the second player, `here` the
+    /// target position of the player's hand [m].
     fn asked(
         &mut self,
         player: usize,
+        second: Option<InputSource>,
         devices: &Devices,
         bindings: &Bindings,
         manner: &InputMapping,
         here: Vec3,
     ) -> Asked {
-        let height = self.goals[player].unwrap_or(here).y;
         let holds = |seat: InputSource| match player {
-            0 => self.second != Some(seat),
-            _ => self.second == Some(seat),
+            0 => second != Some(seat),
+            _ => second == Some(seat),
         };
         let rises = if manner.turn.is_some() { 1.0 } else { 0.0 };
         let mut asked = Asked::default();
-        if let Some(part) = self.keyboard_of(player) {
+        if let Some(part) = Self::keyboard_of(player, second) {
             let held = |action| devices.holds_key(bindings, part, action);
             asked.lean = direction(held);
             asked.lift = rises * opposed(held, Action::Raise, Action::Lower);
@@ -313,35 +366,12 @@ impl Players {
         }
         let all = devices.sticks.devices.iter();
         for device in all.filter(|device| holds(InputSource::Stick(device.id))) {
-            let stick = sticks::radial_dead_zone(device.aim(), DEAD, RIM);
-            let before = self.leans.entry(device.id).or_default();
-            let moved = (Vec2::from(stick) - Vec2::from(*before)).length() > NOISE;
-            if moved || stick == [0.0; 2] {
-                *before = stick;
-            }
             let pushes_back = devices.pushing.contains(&device.id);
-            if !manner.stick_sets_position && !pushes_back {
-                asked.lean += Vec2::from(stick);
-            } else if moved || self.used[player] == Some(InputSource::Stick(device.id)) {
-                asked.position = Some(Aim {
-                    position: manner.position_of(stick, height),
-                    is_seen: false,
-                });
-            }
-            let held = held_on(device, bindings);
-            let means = |action| held.contains(&action);
-            let hat = direction(means);
-            let rise = opposed(means, Action::Raise, Action::Lower) + rise_of(device);
-            let rise = rises * rise;
-            asked.lean += hat;
-            asked.lift += rise;
-            // A force-feedback stick keeps its position when it is let go, so its deflection does not show
-            // that it is in use.
-            let leans = stick != [0.0; 2] && !pushes_back;
-            if moved || leans || hat != Vec2::ZERO || rise != 0.0 {
-                self.used[player] = Some(InputSource::Stick(device.id));
-                self.rested[player] = 0.0;
-            }
+            let height = self.goals[player].unwrap_or(here).y;
+            let wish = self.asked_by_stick(player, device, pushes_back, bindings, manner, height);
+            asked.position = wish.position.or(asked.position);
+            asked.lean += wish.lean;
+            asked.lift += wish.lift;
         }
         let pressed = |action| devices.pressed.contains(&action);
         let thumbs = rises * opposed(pressed, Action::Raise, Action::Lower);
@@ -355,9 +385,52 @@ impl Players {
             asked.wheel = wheel;
             self.used[player] = Some(InputSource::Pointer);
         }
-        if player == 1 && self.second == Some(InputSource::Finger) && devices.second.is_some() {
+        if player == 1 && second == Some(InputSource::Finger) && devices.second.is_some() {
             asked.position = devices.second.map(Aim::seen);
             self.used[1] = Some(InputSource::Finger);
+        }
+        asked
+    }
+
+    /// Collects the requests of a stick or pad. `pushes_back` says whether it has force feedback, `height` is the
+    /// height of the player's goal [m].
+    fn asked_by_stick(
+        &mut self,
+        player: usize,
+        device: &Device,
+        pushes_back: bool,
+        bindings: &Bindings,
+        manner: &InputMapping,
+        height: f32,
+    ) -> Asked {
+        let mut asked = Asked::default();
+        let stick = sticks::radial_dead_zone(device.aim(), DEAD, RIM);
+        let before = self.leans.entry(device.id).or_default();
+        let moved = (Vec2::from(stick) - Vec2::from(*before)).length() > NOISE;
+        if moved || stick == [0.0; 2] {
+            *before = stick;
+        }
+        if !manner.stick_sets_position && !pushes_back {
+            asked.lean += Vec2::from(stick);
+        } else if moved || self.used[player] == Some(InputSource::Stick(device.id)) {
+            asked.position = Some(Aim {
+                position: manner.position_of(stick, height),
+                is_seen: false,
+            });
+        }
+        let held = held_on(device, bindings);
+        let means = |action| held.contains(&action);
+        let hat = direction(means);
+        let rises = if manner.turn.is_some() { 1.0 } else { 0.0 };
+        let rise = rises * (opposed(means, Action::Raise, Action::Lower) + rise_of(device));
+        asked.lean += hat;
+        asked.lift += rise;
+        // A force-feedback stick keeps its position when it is let go, so its deflection does not show
+        // that it is in use.
+        let leans = stick != [0.0; 2] && !pushes_back;
+        if moved || leans || hat != Vec2::ZERO || rise != 0.0 {
+            self.used[player] = Some(InputSource::Stick(device.id));
+            self.rested[player] = 0.0;
         }
         asked
     }

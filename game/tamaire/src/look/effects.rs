@@ -1,7 +1,7 @@
 //! Particles, confetti, and the reactions of bodies to recent events.
 
 use super::confetti::Confetti;
-use super::feelings::{Feeling, MoodInput};
+use super::feelings::{Feeling, MoodInput, largest_mass};
 use app_shell::CameraRig;
 use fuwafuwa::{Contact, Dim, DimVector, Event, NodeId, ObjectRef, Shape, SoftBody, Vec3};
 use tamaire_play::{AnyRound, Round};
@@ -68,6 +68,8 @@ pub struct Effects {
     pub confetti: Confetti,
     /// Feeling of each body (expression and position of its drawn face), in the order of the world's bodies.
     pub feelings: Vec<Feeling>,
+    /// Mass of each body's largest piece at the start of a replay that was wound [kg]. Otherwise empty.
+    start_masses: Vec<f32>,
     /// Contact force between hands and each body [N], smoothed over some ticks.
     pressures: Vec<f32>,
     /// Opacity of the start hint, 0 to 1.
@@ -95,6 +97,7 @@ impl Default for Effects {
             specks: Vec::new(),
             confetti: Confetti::default(),
             feelings: Vec::new(),
+            start_masses: Vec::new(),
             pressures: Vec::new(),
             hint: 0.0,
             start: None,
@@ -111,6 +114,18 @@ impl Default for Effects {
 }
 
 impl Effects {
+    /// Creates the effects of a replay that was wound. A body that has lost a large part of itself since `start`,
+    /// the start of the replay, is sad.
+    pub fn resumed(start: &AnyRound) -> Self {
+        Self {
+            start_masses: match start {
+                AnyRound::Plane(round) => largest_masses(round),
+                AnyRound::Space(round) => largest_masses(round),
+            },
+            ..Self::default()
+        }
+    }
+
     /// Processes the events of a tick. `still` selects reduced motion: fewer particles, no confetti.
     pub fn process_tick(&mut self, round: &AnyRound, camera: &mut CameraRig, still: bool) {
         match round {
@@ -125,9 +140,15 @@ impl Effects {
         if world.ticks() <= self.tick || self.feelings.len() != bodies.clone().count() {
             // A new round has begun, so all effects restart.
             let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
+            let masses = std::mem::take(&mut self.start_masses);
+            let mut masses = masses.into_iter();
+            let feeling = |(_, body): (_, &SoftBody<D>)| match masses.next() {
+                Some(mass) => Feeling::new(body, eye).since(body, mass),
+                None => Feeling::new(body, eye),
+            };
             *self = Self {
                 pressures: vec![0.0; bodies.clone().count()],
-                feelings: bodies.map(|(_, body)| Feeling::new(body, eye)).collect(),
+                feelings: bodies.map(feeling).collect(),
                 gravity: Vec3::from(round.level().scene().gravity),
                 room: round.level().arena(),
                 axes: D::N,
@@ -289,6 +310,12 @@ impl Effects {
         };
         self.specks.push(speck);
     }
+}
+
+/// Returns the mass of the largest piece of each body [kg].
+fn largest_masses<D: Dim>(round: &Round<D>) -> Vec<f32> {
+    let bodies = round.world().soft_bodies();
+    bodies.map(|(_, body)| largest_mass(body)).collect()
 }
 
 /// Returns the material of `body` at its node nearest to `at` [m].

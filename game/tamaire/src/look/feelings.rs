@@ -132,11 +132,23 @@ impl Feeling {
         feeling
     }
 
+    /// Returns the feeling of a body whose largest piece had the mass `whole` [kg] at the start of the round.
+    pub(super) fn since<D: Dim>(mut self, body: &SoftBody<D>, whole: f32) -> Self {
+        self.whole = whole;
+        self.is_scarred = self.has_lost_much(body);
+        self
+    }
+
+    /// Whether the largest piece of the body has lost a large part.
+    fn has_lost_much<D: Dim>(&self, body: &SoftBody<D>) -> bool {
+        largest_mass(body) < (1.0 - LOST) * self.whole
+    }
+
     /// Advances the feeling and the drawn face by one tick.
     pub fn update<D: Dim>(&mut self, body: &SoftBody<D>, fate: MoodInput) {
         if fate.tick.is_multiple_of(LOOK) {
             (self.strain, self.is_still) = (strain(body), mean_speed(body) < STILL);
-            self.is_scarred |= largest_mass(body) < (1.0 - LOST) * self.whole;
+            self.is_scarred |= self.has_lost_much(body);
         }
         self.is_scarred |=
             { fate.torn }.is_some_and(|at| (at - self.at).length() < REGION * self.size);
@@ -303,7 +315,7 @@ fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
 }
 
 /// Returns the mass of the largest piece [kg].
-fn largest_mass<D: Dim>(body: &SoftBody<D>) -> f32 {
+pub(super) fn largest_mass<D: Dim>(body: &SoftBody<D>) -> f32 {
     masses(body).iter().copied().fold(0.0, f32::max)
 }
 
@@ -500,6 +512,19 @@ mod tests {
         assert_eq!(mood(&mut feeling, &world[soft], none, 60), Mood::Calm);
         stretch(&mut world, 1.2, Vec2::X);
         assert_eq!(mood(&mut feeling, &world[soft], none, 60), Mood::Wince);
+    }
+
+    #[test]
+    fn body_halved_before_a_replay_was_wound_is_sad() {
+        let (mut world, soft) = alone(VoxelGrid::<Dim2>::ball(16, 1.0).expect("the grid is valid"));
+        let none = MoodInput::default();
+        let whole = largest_mass(&world[soft]);
+        let mut unharmed = Feeling::new(&world[soft], None).since(&world[soft], whole);
+        assert_eq!(mood(&mut unharmed, &world[soft], none, 60), Mood::Calm);
+        let blade = Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0));
+        world.cut(soft, &blade).unwrap();
+        let mut halved = Feeling::new(&world[soft], None).since(&world[soft], whole);
+        assert_eq!(mood(&mut halved, &world[soft], none, 60), Mood::Sad);
     }
 
     #[test]

@@ -13,6 +13,7 @@ use crate::records::Records;
 use crate::settings::Settings;
 use crate::words::Language;
 use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use tamaire_play::{Level, Replay, ReplayError};
@@ -43,7 +44,7 @@ pub struct Files {
 
 /// Data folder of the game according to the system, if any.
 #[cfg(not(target_family = "wasm"))]
-pub fn data_folder() -> Option<std::path::PathBuf> {
+pub fn data_folder() -> Option<PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "tamaire")?;
     Some(folders.data_dir().into())
 }
@@ -52,8 +53,8 @@ pub fn data_folder() -> Option<std::path::PathBuf> {
 enum JobResult {
     Note(io::Result<()>),
     Level(io::Result<Result<Arc<Level>, Damage>>),
-    Replay(io::Result<String>),
-    Picture(io::Result<String>),
+    Replay(io::Result<PathBuf>),
+    Picture(io::Result<PathBuf>),
 }
 
 /// Message about stored data.
@@ -64,7 +65,7 @@ pub enum StorageEvent {
     /// Stored data could not be used.
     Damaged(Damage),
     /// A replay or picture was saved at this location.
-    Saved(String),
+    Saved(PathBuf),
     /// Writing failed. For settings, records and levels this is reported once, until a write succeeds.
     Failed(String),
     /// Writing failed because the storage is full.
@@ -103,7 +104,7 @@ impl Files {
 
     /// Stores all data in the given folder.
     #[cfg(not(target_family = "wasm"))]
-    pub fn in_folder(folder: impl Into<std::path::PathBuf>) -> Self {
+    pub fn in_folder(folder: impl Into<PathBuf>) -> Self {
         let user = super::folder::UserFolders::default();
         Self::on(super::folder::Folder::new(folder.into(), user))
     }
@@ -163,7 +164,7 @@ impl Files {
             Ok(None) => return (usual, None),
             Err(error) => {
                 let location = self.storage.location(Kind::Note, name);
-                let refused = vec![format!("{location} ({error})")];
+                let refused = vec![format!("{} ({error})", location.display())];
                 let aside = None;
                 let is_told = std::mem::replace(&mut self.is_failing, true);
                 let damage = (!is_told).then_some(Damage { refused, aside });
@@ -391,7 +392,7 @@ impl Files {
     ///
     /// # Errors
     /// The error of the system.
-    pub fn open_folder_of(&self, location: &str) -> io::Result<()> {
+    pub fn open_folder_of(&self, location: &Path) -> io::Result<()> {
         self.storage.open_folder_of(location)
     }
 
@@ -421,7 +422,8 @@ impl Files {
 
     /// Location of a replay, as text for the player.
     pub fn location(&self, name: &str) -> String {
-        self.storage.location(Kind::Replay, name)
+        let location = self.storage.location(Kind::Replay, name);
+        location.display().to_string()
     }
 
     /// Deletes a replay.

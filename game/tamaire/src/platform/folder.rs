@@ -103,13 +103,16 @@ impl Folder {
         match path.parent().map_or(Ok(()), fs::create_dir_all) {
             Ok(()) => Ok(path),
             Err(error) if self.user.of(kind).is_none() => Err(error),
-            Err(_) => {
-                // The folder of the user cannot be made, for example in a sandbox.
-                let (folder, _) = self.of(kind);
-                fs::create_dir_all(&folder)?;
-                Ok(folder.join(self.file_name(kind, name)?))
-            }
+            // The folder of the user cannot be made, for example in a sandbox.
+            Err(_) => self.own_path_to_write(kind, name),
         }
+    }
+
+    /// Returns the path of an entry in the folder of the game, and makes its folder.
+    fn own_path_to_write(&self, kind: Kind, name: &str) -> io::Result<PathBuf> {
+        let (folder, _) = self.of(kind);
+        fs::create_dir_all(&folder)?;
+        Ok(folder.join(self.file_name(kind, name)?))
     }
 
     /// Returns the name of the file of an entry.
@@ -187,7 +190,13 @@ impl Storage for Folder {
         let _lock = self.lock()?;
         let before = self.read(kind, name)?;
         match change(before.as_deref()) {
-            Some(after) if before.as_ref() != Some(&after) => write_whole(&path, &after),
+            Some(after) if before.as_ref() != Some(&after) => match write_whole(&path, &after) {
+                // The folder of the user exists, but nothing can be written there.
+                Err(error) if is_unwritable(&error) && before.is_none() => {
+                    write_whole(&self.own_path_to_write(kind, name)?, &after)
+                }
+                written => written,
+            },
             _ => Ok(()),
         }
     }
@@ -196,18 +205,18 @@ impl Storage for Folder {
         fs::remove_file(self.path(kind, name)?)
     }
 
-    fn location(&self, kind: Kind, name: &str) -> String {
-        let path = self.path(kind, name);
-        path.map_or_else(|_| name.into(), |path| path.display().to_string())
+    fn location(&self, kind: Kind, name: &str) -> PathBuf {
+        self.path(kind, name).unwrap_or_else(|_| name.into())
     }
 
     fn has_folders(&self) -> bool {
         true
     }
 
-    fn open_folder_of(&self, location: &str) -> io::Result<()> {
-        let folder = Path::new(location).parent();
+    fn open_folder_of(&self, location: &Path) -> io::Result<()> {
+        let folder = location.parent();
         let folder = folder.filter(|folder| folder.is_dir()).ok_or_else(|| {
+            let location = location.display();
             let reason = format!("{location}: expected a file in a folder that exists");
             io::Error::new(ErrorKind::NotFound, reason)
         })?;
@@ -217,6 +226,10 @@ impl Storage for Folder {
 
 fn is_denied(error: &io::Error) -> bool {
     error.kind() == ErrorKind::PermissionDenied
+}
+
+fn is_unwritable(error: &io::Error) -> bool {
+    is_denied(error) || error.kind() == ErrorKind::ReadOnlyFilesystem
 }
 
 fn is_missing(error: &io::Error) -> bool {
@@ -288,7 +301,7 @@ mod tests {
         ] {
             assert!(add(&storage, kind, "a", path).unwrap());
             let path = folder.path().join(path);
-            assert_eq!(storage.location(kind, "a"), path.display().to_string());
+            assert_eq!(storage.location(kind, "a"), path);
             let text = fs::read_to_string(&path).unwrap();
             assert!(path.ends_with(&text), "{text}");
             assert_eq!(storage.list(kind).unwrap().len(), 1, "{kind:?}");
@@ -337,12 +350,32 @@ mod tests {
         assert!(add(&storage, Kind::Photo, "a", "photo").unwrap());
         let path = folder.path().join("hidden/pictures/a.png");
         assert_eq!(fs::read_to_string(&path).unwrap(), "photo");
-        assert_eq!(
-            storage.location(Kind::Photo, "a"),
-            path.display().to_string()
-        );
-        let error = storage.open_folder_of("nowhere/a.png").unwrap_err();
+        assert_eq!(storage.location(Kind::Photo, "a"), path);
+        let error = { storage.open_folder_of(Path::new("nowhere/a.png")) }.unwrap_err();
         assert!(error.to_string().contains("nowhere/a.png"), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn photo_is_written_into_folder_of_game_if_folder_of_user_is_read_only() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let storage = with_user_folders(folder.path());
+        let pictures = folder.path().join("Pictures/Tamaire");
+        fs::create_dir_all(&pictures).unwrap();
+        fs::set_permissions(&pictures, fs::Permissions::from_mode(0o555)).unwrap();
+        // The administrator may write everywhere.
+        let is_allowed = fs::write(pictures.join("probe"), "").is_ok();
+        assert!(add(&storage, Kind::Photo, "a", "photo").unwrap());
+        let own = folder.path().join("hidden/pictures/a.png");
+        let path = if is_allowed {
+            pictures.join("a.png")
+        } else {
+            own
+        };
+        assert_eq!(fs::read_to_string(&path).unwrap(), "photo");
+        assert_eq!(storage.location(Kind::Photo, "a"), path);
+        fs::set_permissions(&pictures, fs::Permissions::from_mode(0o755)).unwrap();
     }
 
     #[test]

@@ -50,7 +50,7 @@ mod on_disk {
     use crate::platform::storage::Kind;
     use fuwafuwa_scenes::disk::{read_bytes, reader_in};
     use fuwafuwa_scenes::import::MAX_FILE_BYTES;
-    use std::io::ErrorKind;
+    use std::io::{self, ErrorKind};
     use std::path::Path;
     use tamaire_play::level::LevelError;
     use tamaire_play::link::is_link;
@@ -63,11 +63,12 @@ mod on_disk {
             if is_link(&location) && !path.exists() {
                 return Self::Link(location.into());
             }
-            // A file that cannot be read is refused below.
-            let bytes = read_bytes(path, MAX_FILE_BYTES).unwrap_or_default();
-            match is_replay(&location, &bytes) {
-                true => Self::Replay(location.into(), replay_in(path).map(Box::new)),
-                false => Self::Level(level_at(path).map(Box::new)),
+            let bytes = read_bytes(path, MAX_FILE_BYTES);
+            // Without content, the name decides.
+            let content = bytes.as_deref().unwrap_or_default();
+            match is_replay(&location, content) {
+                true => Self::Replay(location.into(), replay_of(bytes).map(Box::new)),
+                false => Self::Level(level_of(path, bytes).map(Box::new)),
             }
         }
     }
@@ -77,12 +78,17 @@ mod on_disk {
     /// # Errors
     /// [`LevelError`] states the problem.
     pub fn level_at(path: &Path) -> Result<Level, LevelError> {
+        level_of(path, read_bytes(path, MAX_FILE_BYTES))
+    }
+
+    /// Opens a built-in level by its name, or the level at `path` from the content of its file.
+    fn level_of(path: &Path, bytes: io::Result<Vec<u8>>) -> Result<Level, LevelError> {
         let location = path.to_string_lossy();
         let missing = match Level::open(&location) {
             Err(LevelError::Unknown { id, known }) => LevelError::Missing { id, known },
             opened => return opened,
         };
-        let bytes = match read_bytes(path, MAX_FILE_BYTES) {
+        let bytes = match bytes {
             Ok(bytes) => bytes,
             Err(error) if error.kind() == ErrorKind::NotFound => return Err(missing),
             Err(error) => {
@@ -114,8 +120,12 @@ mod on_disk {
     /// # Errors
     /// [`ReplayError`] if it cannot be read or is not a replay.
     pub fn replay_in(path: &Path) -> Result<Replay, ReplayError> {
-        let bytes = read_bytes(path, Kind::Replay.most_bytes());
-        let unreadable = |error: std::io::Error| ReplayError::Unreadable(error.to_string());
+        replay_of(read_bytes(path, Kind::Replay.most_bytes()))
+    }
+
+    /// Reads a replay from the content of its file.
+    fn replay_of(bytes: io::Result<Vec<u8>>) -> Result<Replay, ReplayError> {
+        let unreadable = |error: io::Error| ReplayError::Unreadable(error.to_string());
         Replay::of_bytes(&bytes.map_err(unreadable)?)
     }
 

@@ -3,6 +3,7 @@
 use super::storage::{Kind, Storage};
 use crate::records::Records;
 use std::io;
+use std::path::PathBuf;
 use std::sync::Arc;
 use tamaire_play::{Assist, Level, Replay, shortened};
 
@@ -42,7 +43,7 @@ pub(super) fn put_aside(
             found.is_none().then(|| bytes.to_vec())
         })?;
         if is_there {
-            return Ok(storage.location(kind, &aside));
+            return Ok(storage.location(kind, &aside).display().to_string());
         }
         number += 1;
     }
@@ -58,7 +59,7 @@ pub(super) fn read_level(storage: &dyn Storage, name: &str) -> Result<Arc<Level>
     let location = storage.location(Kind::Level, name);
     let refused = |reason: &str, aside| {
         let reason = shortened(reason, LETTERS);
-        let refused = vec![format!("{location} ({reason})")];
+        let refused = vec![format!("{} ({reason})", location.display())];
         Damage { refused, aside }
     };
     let unreadable = |error: io::Error| refused(&error.to_string(), None);
@@ -91,7 +92,7 @@ pub(super) fn merge_records(
 }
 
 /// Saves a replay and returns its location.
-pub(super) fn save_replay(storage: &dyn Storage, replay: &Replay) -> io::Result<String> {
+pub(super) fn save_replay(storage: &dyn Storage, replay: &Replay) -> io::Result<PathBuf> {
     // Returns an error if the replay cannot be encoded, because such a replay could never be watched.
     let text = replay.text_to_keep().map_err(io::Error::other)?;
     save(storage, Kind::Replay, &stem_of(replay), text.as_bytes())
@@ -139,7 +140,7 @@ pub(super) fn save(
     kind: Kind,
     stem: &str,
     bytes: &[u8],
-) -> io::Result<String> {
+) -> io::Result<PathBuf> {
     let names = storage.list(kind)?;
     let is_listed = |name: &String| names.iter().any(|entry| entry.name == *name);
     let numbered = (1..).map(|number| format!("{stem}-{number}"));

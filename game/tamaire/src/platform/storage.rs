@@ -2,6 +2,7 @@
 //! storage. The rest of the game does not access files.
 
 use std::io;
+use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 /// Kind of a stored entry.
@@ -71,8 +72,8 @@ pub trait Storage: Send + Sync {
     /// The error of the system.
     fn remove(&self, kind: Kind, name: &str) -> io::Result<()>;
 
-    /// Location of an entry, as text for the player.
-    fn location(&self, kind: Kind, name: &str) -> String;
+    /// Location of an entry: the path of its file, or its name.
+    fn location(&self, kind: Kind, name: &str) -> PathBuf;
 
     /// Whether entries can be given to the player as files. False if entries are files already.
     fn can_export(&self) -> bool {
@@ -97,7 +98,7 @@ pub trait Storage: Send + Sync {
     ///
     /// # Errors
     /// The error of the system, or `Unsupported` without folders.
-    fn open_folder_of(&self, _: &str) -> io::Result<()> {
+    fn open_folder_of(&self, _: &Path) -> io::Result<()> {
         Err(io::ErrorKind::Unsupported.into())
     }
 
@@ -141,7 +142,7 @@ impl Storage for Nowhere {
         self.answer(())
     }
 
-    fn location(&self, _: Kind, name: &str) -> String {
+    fn location(&self, _: Kind, name: &str) -> PathBuf {
         name.into()
     }
 }

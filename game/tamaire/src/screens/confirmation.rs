@@ -12,6 +12,13 @@ pub(super) fn is_pending(ui: &Ui, what: &str) -> bool {
     asked.is_some_and(|(asked, when)| asked == what && now - when < PATIENCE)
 }
 
+/// Whether the question about `what` is open. Unlike [`is_pending`], a question with an answer "no" waits without
+/// a time limit.
+pub(super) fn is_asked(ui: &Ui, what: &str) -> bool {
+    let asked: Option<(String, f64)> = ui.data(|data| data.get_temp(id()));
+    asked.is_some_and(|(asked, _)| asked == what)
+}
+
 /// Notes a first press on `what`, which starts the time window. `None` cancels a pending confirmation.
 pub(super) fn set_pending(ui: &Ui, what: Option<&str>) {
     let now = ui.input(|input| input.time);

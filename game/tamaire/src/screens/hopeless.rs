@@ -2,17 +2,18 @@
 
 use super::buttons::pale;
 use super::hud;
-use crate::game::{Game, ScreenButton};
+use crate::game::{CurrentRound, Game, ScreenButton};
 use crate::input::Action;
-use app_shell::widgets::{ButtonStyle, button, fitted};
-use egui::{Id, Rect, Ui, UiBuilder, pos2, vec2};
-use fuwafuwa::{Dim, DimVector};
-use tamaire_play::rules::CRUMB;
+use app_shell::widgets::{ButtonStyle, button};
+use egui::{FontId, Rect, Ui, UiBuilder, pos2, vec2};
+use fuwafuwa::{Dim, DimVector, Vec3};
 use tamaire_play::{AnyRound, Round};
 
 /// Interval between two looks at the pieces [ticks]. A look reads all elements.
 const LOOK: u64 = 30;
-/// Height of the message [points at scale 1].
+/// Distance from the arena from which a piece is out of reach [m].
+const OUT: f32 = 0.3;
+/// Height of the message with one line of text [points at scale 1].
 const HIGH: f32 = 56.0;
 /// Distance of the message from the lower edge of the window [points at scale 1].
 const EDGE: f32 = 15.0;
@@ -22,23 +23,26 @@ const BUTTON: egui::Vec2 = vec2(150.0, 42.0);
 /// Shows the message if the round on the screen cannot be won any more. Returns whether the mouse is over its
 /// button.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
-    let round = game.bout.round();
-    let is_open = game.bout.session.is_played() && round.progress().outcome.is_none();
-    if !is_open || !is_hopeless_lately(round, ui) {
+    let bout = &mut game.bout;
+    let is_open = bout.session.is_played() && bout.round().progress().outcome.is_none();
+    if !is_open || !is_hopeless_lately(bout) {
         return false;
     }
     let (theme, said, scale) = (game.theme(), game.words(), hud::scale(game, ui));
     let screen = ui.max_rect();
     let most = screen.width() - 2.0 * EDGE - BUTTON.x - scale * 56.0;
-    let text = fitted(ui.painter(), said.hopeless, scale * 19.0, most, theme.ink);
-    let size = vec2(text.size().x + BUTTON.x + scale * 44.0, scale * HIGH);
+    let font = FontId::proportional(scale * 19.0);
+    let text = { ui.painter() }.layout(said.hopeless.to_string(), font, theme.ink, most.max(80.0));
+    let high = (scale * HIGH).max(text.size().y + scale * 20.0);
+    let size = vec2(text.size().x + BUTTON.x + scale * 44.0, high);
     let below = match game.public {
         Some(_) => hud::STAND,
         None => scale * EDGE,
     };
     let middle = pos2(screen.center().x, screen.bottom() - below - 0.5 * size.y);
     let rect = Rect::from_center_size(middle, size);
-    ui.painter().rect_filled(rect, 0.5 * size.y, pale(&theme));
+    ui.painter()
+        .rect_filled(rect, scale * 0.5 * HIGH, pale(&theme));
     let at = rect.left_center() + vec2(scale * 22.0, -0.5 * text.size().y);
     ui.painter().galley(at, text, theme.ink);
     let corner = rect.right_center() - vec2(BUTTON.x + scale * 8.0, 0.5 * BUTTON.y);
@@ -61,54 +65,80 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
 }
 
 /// Whether the round was hopeless at the last look.
-fn is_hopeless_lately(round: &AnyRound, ui: &Ui) -> bool {
-    let id = Id::unique("hopeless round");
-    let look = round.ticks() / LOOK;
-    let known: Option<(u64, bool)> = ui.data(|data| data.get_temp(id));
-    match known.filter(|(before, _)| *before == look) {
-        Some((_, is_hopeless)) => is_hopeless,
-        None => {
-            let is_hopeless = is_hopeless(round);
-            ui.data_mut(|data| data.insert_temp(id, (look, is_hopeless)));
-            is_hopeless
-        }
-    }
+fn is_hopeless_lately(bout: &mut CurrentRound) -> bool {
+    let look = bout.round().ticks() / LOOK;
+    let known = bout.hopeless.filter(|(before, _)| *before == look);
+    let (_, is_hopeless) = known.unwrap_or_else(|| (look, is_hopeless(bout.round())));
+    bout.hopeless = Some((look, is_hopeless));
+    is_hopeless
 }
 
-/// Whether so much of the bodies is crumbs outside the basket that the rest is less than a win requires. Bodies
-/// that start as crumbs can always be won.
-pub(super) fn is_hopeless(round: &AnyRound) -> bool {
-    let level = round.level();
-    let starts_torn =
-        { level.scene().body.iter() }.any(|body| body.crumbled || body.diced.is_some());
+/// Whether the mass that can still be in the basket is less than a win requires.
+fn is_hopeless(round: &AnyRound) -> bool {
     let left = match round {
         AnyRound::Plane(round) => share_left(round),
         AnyRound::Space(round) => share_left(round),
     };
-    round.has_basket() && !starts_torn && left < level.game().share
+    round.has_basket() && left < round.level().game().share
 }
 
-/// Returns the share of the mass that is in pieces larger than crumbs, or in the basket.
+/// Returns the share of the mass that is in the basket or that a hand can reach. Crumbs count: they can be swept
+/// into the basket.
 fn share_left<D: Dim>(round: &Round<D>) -> f32 {
-    let whole = round.progress().mass;
     let is_in_basket = |at| {
         { round.basket() }.is_some_and(|basket| basket.distance(D::Vector::from_vec3(at)).0 <= 0.0)
     };
     let pieces = { round.world().soft_bodies() }.flat_map(|(_, body)| body.piece_views());
-    let left = pieces.filter(|piece| piece.mass > CRUMB * whole || is_in_basket(piece.centre));
-    left.map(|piece| piece.mass).sum::<f32>() / whole
+    let left = pieces.filter(|piece| {
+        is_in_basket(piece.centre) || !piece.quarantined && !is_lost(round, piece.centre)
+    });
+    left.map(|piece| piece.mass).sum::<f32>() / round.progress().mass
+}
+
+/// Whether a position is outside the arena, where no hand can be, and gravity does not pull it back in.
+fn is_lost<D: Dim>(round: &Round<D>, at: Vec3) -> bool {
+    let [low, high] = round.level().arena();
+    let fall = round.world().config().gravity;
+    (0..D::N).any(|axis| {
+        let is_below = at[axis] < low[axis] - OUT && fall[axis] <= 0.0;
+        let is_above = at[axis] > high[axis] + OUT && fall[axis] >= 0.0;
+        is_below || is_above
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fuwafuwa::Dim2;
+    use crate::session::Session;
     use std::sync::Arc;
     use tamaire_play::{InputFrame, Level};
 
-    fn round(id: &str) -> AnyRound {
-        let mut round = AnyRound::new(Arc::new(Level::open(id).unwrap()));
-        for _ in 0..30 {
+    /// Level without a floor.
+    const BOTTOMLESS: &str = r#"
+dim = 2
+gravity = [0.0, -3.0, 0.0]
+view = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]]
+[game]
+name = { en = "Bottomless" }
+basket = { centre = [1.0, 0.0, 0.0], half = [0.5, 0.5, 0.0] }
+[[body]]
+shape = "ball"
+n = 8
+width = 0.6
+at = [-0.3, -0.3, 0.0]
+[[hand]]
+radius = 0.09
+path = [[0.0, -1.4, 0.0, 0.0]]
+"#;
+
+    fn level(text: &str) -> Level {
+        let none = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+        Level::read("test.toml", text.as_bytes(), &none).unwrap()
+    }
+
+    fn after(level: Level, ticks: usize) -> AnyRound {
+        let mut round = AnyRound::new(Arc::new(level));
+        for _ in 0..ticks {
             round.step(InputFrame::default());
         }
         round
@@ -117,22 +147,37 @@ mod tests {
     #[test]
     fn whole_bodies_are_not_hopeless() {
         for id in ["classic", "twins", "core", "biscuit", "hoop"] {
-            assert!(!is_hopeless(&round(id)), "{id}");
+            let round = after(Level::open(id).unwrap(), 30);
+            assert!(!is_hopeless(&round), "{id}");
         }
     }
 
     #[test]
-    fn body_of_crumbs_outside_the_basket_is_hopeless() {
+    fn crumbs_outside_the_basket_are_not_hopeless() {
         let text = std::fs::read_to_string("../tamaire_play/levels/classic.toml").unwrap();
         let crumbled = text.replacen("[[body]]", "[[body]]\ncrumbled = true", 1);
-        let none = |_: &str| Err(std::io::ErrorKind::NotFound.into());
-        let level = Level::read("crumbs.toml", crumbled.as_bytes(), &none).unwrap();
-        let AnyRound::Plane(round) = AnyRound::new(Arc::new(level)) else {
-            panic!("the level is in 2D");
-        };
-        let left = share_left::<Dim2>(&round);
-        assert!(left < 0.01, "{left}");
-        // A level that starts in crumbs is meant to be won with crumbs.
-        assert!(!is_hopeless(&AnyRound::Plane(round)));
+        let round = after(level(&crumbled), 0);
+        assert!(round.progress().pieces > 100, "crumbs");
+        assert!(!is_hopeless(&round));
+    }
+
+    #[test]
+    fn body_that_fell_out_of_the_arena_is_hopeless() {
+        assert!(!is_hopeless(&after(level(BOTTOMLESS), 0)));
+        // It falls 6 m in two seconds.
+        assert!(is_hopeless(&after(level(BOTTOMLESS), 120)));
+        // A body above the arena falls back.
+        let above = BOTTOMLESS.replace("at = [-0.3, -0.3, 0.0]", "at = [-0.3, 2.0, 0.0]");
+        assert!(!is_hopeless(&after(level(&above), 0)));
+    }
+
+    #[test]
+    fn last_look_is_forgotten_in_a_new_round() {
+        let begin = |text: &str| Session::of_people(Arc::new(level(text)));
+        let mut bout = CurrentRound::new(begin(BOTTOMLESS));
+        bout.hopeless = Some((0, true));
+        assert!(is_hopeless_lately(&mut bout));
+        bout.begin(begin(BOTTOMLESS), 0.0);
+        assert!(!is_hopeless_lately(&mut bout));
     }
 }

@@ -4,6 +4,7 @@ use super::{hud, result};
 use crate::game::{Game, Notice, Screen};
 use app_shell::widgets::{ButtonStyle, button};
 use egui::{Color32, FontId, Painter, Pos2, Rect, Ui, pos2, vec2};
+use std::path::{Path, PathBuf};
 use tamaire_sound::Menu;
 
 /// Size of the progress bar [points].
@@ -16,7 +17,7 @@ const BUTTON: egui::Vec2 = vec2(170.0, 38.0);
 struct Shown {
     text: String,
     /// Location of a saved file.
-    saved: Option<String>,
+    saved: Option<PathBuf>,
     /// Remaining display time [s].
     left: f32,
 }
@@ -37,7 +38,12 @@ pub(super) fn show(game: &mut Game, ui: &Ui) {
             scale,
         );
         if let Some(location) = notice.saved
-            && open_folder(game, ui, pos2(rect.center().x, rect.bottom() - scale * 9.0))
+            && open_folder(
+                game,
+                ui,
+                &location,
+                pos2(rect.center().x, rect.bottom() - scale * 9.0),
+            )
         {
             opened = Some(location);
         }
@@ -109,12 +115,12 @@ fn draw(painter: &Painter, notice: &Shown, top: Pos2, width: f32, scale: f32) ->
     rect
 }
 
-/// Shows the button that opens a folder, with the middle of its lower edge at `below`. Returns whether it was
-/// pressed.
-fn open_folder(game: &Game, ui: &Ui, below: Pos2) -> bool {
+/// Shows the button that opens the folder of the file saved at `location`, with the middle of its lower edge at
+/// `below`. Returns whether it was pressed.
+fn open_folder(game: &Game, ui: &Ui, location: &Path, below: Pos2) -> bool {
     let corner = below - vec2(0.5 * BUTTON.x, BUTTON.y);
     // One layer above the notices, which have no area of their own and would be drawn over an area.
-    let area = egui::Area::new(egui::Id::unique("open folder"))
+    let area = egui::Area::new(egui::Id::unique(("open folder", location)))
         .order(egui::Order::Tooltip)
         .fixed_pos(corner);
     let (theme, said) = (game.theme(), game.words());

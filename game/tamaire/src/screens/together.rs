@@ -3,6 +3,7 @@
 use super::widgets::{Act, card, column, dim_background, menu, perform, title};
 use crate::game::{Game, Screen};
 use crate::input::{Action, InputSource, KeyboardPart};
+use app_shell::widgets::{ButtonStyle, button};
 use egui::{Align, Label, RichText, Ui, vec2};
 
 /// Actions that move a hand, in the order in which their keys are listed.
@@ -15,7 +16,11 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let parts = [KeyboardPart::Arrows, KeyboardPart::Letters];
     let names = parts.map(|part| bindings.names_in(&WAYS, part));
     let has_all = |part| WAYS.iter().all(|&way| bindings.has_key_in(way, part));
-    let is_split = parts.into_iter().all(has_all);
+    let missing = [said.no_arrow_keys, said.no_letter_keys];
+    let missing = { parts.into_iter().zip(missing) }.filter(|(part, _)| !has_all(*part));
+    let missing: Vec<&str> = missing.map(|(_, text)| text).collect();
+    // A second player who joined with another device needs no keys.
+    let can_be_two = missing.is_empty() || game.controls.players.second().is_some();
     let wanted = column(ui, 520.0, 0.5, |ui| {
         card(ui, &theme, |ui| {
             title(ui, &theme, said.two_players);
@@ -38,8 +43,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                     });
                     ui.add_space(4.0);
                 }
-                if !is_split {
-                    let warning = RichText::new(said.no_letter_keys).size(19.0);
+                for text in missing {
+                    let warning = RichText::new(text).size(19.0);
                     ui.add(Label::new(warning.color(theme.accent)).wrap());
                 }
             });
@@ -49,7 +54,15 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 (said.play_alone, |game| play(game, false)),
                 (said.back, Game::go_back),
             ];
-            menu(ui, &theme, vec2(300.0, 50.0), &options)
+            let size = vec2(300.0, 50.0);
+            if can_be_two {
+                return menu(ui, &theme, size, &options);
+            }
+            ui.add_enabled_ui(false, |ui| {
+                button(ui, &theme, said.play_as_two, size, ButtonStyle::Other);
+            });
+            ui.add_space(10.0);
+            menu(ui, &theme, size, &options[1..])
         })
     });
     perform(game, ui, wanted, Game::go_back);

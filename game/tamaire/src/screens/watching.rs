@@ -9,10 +9,12 @@ use fuwafuwa::DEFAULT_TICK;
 
 /// Maximum width of the bar [points].
 const WIDE: f32 = 760.0;
-/// Height of the bar [points].
+/// Height of a row of the bar [points].
 const HIGH: f32 = 60.0;
 /// Distance of the bar from the edges of the window [points].
 const EDGE: f32 = 15.0;
+/// Width of the bar below which the speeds are in a second row [points].
+const NARROW: f32 = 560.0;
 /// Gap between the parts of the bar [points].
 const GAP: f32 = 12.0;
 /// Size of the button of a speed [points].
@@ -27,17 +29,23 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     };
     let (theme, screen) = (game.theme(), ui.max_rect());
     let width = WIDE.min(screen.width() - 2.0 * EDGE);
-    let middle = pos2(screen.center().x, screen.bottom() - EDGE - 0.5 * HIGH);
-    let bar = Rect::from_center_size(middle, vec2(width, HIGH));
+    let is_narrow = width < NARROW;
+    let high = if is_narrow { 2.0 * HIGH } else { HIGH };
+    let middle = pos2(screen.center().x, screen.bottom() - EDGE - 0.5 * high);
+    let bar = Rect::from_center_size(middle, vec2(width, high));
     ui.painter().rect_filled(bar, 0.5 * HIGH, pale(&theme));
     let inside = bar.shrink2(vec2(24.0, 0.0));
+    let speeds = SPEEDS.len() as f32 * (SPEED.x + GAP) - GAP;
+    let parts = match is_narrow {
+        true => inside.split_top_bottom_at_fraction(0.5),
+        false => inside.split_left_right_at_x(inside.right() - speeds),
+    };
     let layout = Layout::left_to_right(Align::Center);
-    let builder = UiBuilder::new().max_rect(inside).layout(layout);
-    ui.scope_builder(builder, |ui| {
+    let builder = |rect| UiBuilder::new().max_rect(rect).layout(layout);
+    ui.scope_builder(builder(parts.0), |ui| {
         ui.spacing_mut().item_spacing.x = GAP;
         draw_clock(ui, game, [tick, length]);
-        let speeds = SPEEDS.len() as f32 * (SPEED.x + GAP);
-        let wide = (ui.available_width() - speeds).max(60.0);
+        let wide = (ui.available_width() - GAP).max(60.0);
         let all = length.max(1) as f32 * DEFAULT_TICK;
         let here = tick as f32 * DEFAULT_TICK;
         let name = game.words().position;
@@ -47,6 +55,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             let last = length.saturating_sub(1);
             game.wind_to(((seconds / DEFAULT_TICK).round() as usize).min(last));
         }
+    });
+    ui.scope_builder(builder(parts.1), |ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
         for (speed, text) in SPEEDS {
             let is_chosen = game.bout.watch_speed == speed;
             let response = plain_button(ui, &theme, text, SPEED, ButtonStyle::of(is_chosen));

@@ -1,7 +1,7 @@
 //! A replay that can be wound to any tick.
 
 use app_shell::Clock;
-use tamaire_play::{Playback, ReplayError};
+use tamaire_play::{AnyRound, Playback, ReplayError};
 
 /// Maximum number of marks. A mark holds a whole world, some megabytes for a large level.
 const MOST_MARKS: usize = 12;
@@ -35,6 +35,12 @@ impl Reel {
     /// Returns the playback in its current state.
     pub fn playback(&self) -> &Playback {
         &self.playback
+    }
+
+    /// Returns the round at the start of the replay.
+    pub fn start(&self) -> &AnyRound {
+        // The first mark is never removed: tick 0 is a multiple of every distance between marks.
+        self.marks[0].round()
     }
 
     /// Tick that is shown, or that is being wound to.
@@ -98,7 +104,7 @@ impl Reel {
 mod tests {
     use super::*;
     use std::sync::Arc;
-    use tamaire_play::{AnyRound, Bot, BotKind, Level, Replay};
+    use tamaire_play::{Bot, BotKind, Level, Replay};
 
     fn replay(ticks: usize) -> Arc<Replay> {
         let mut round = AnyRound::new(Arc::new(Level::open("classic").unwrap()));

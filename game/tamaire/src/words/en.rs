@@ -1,7 +1,7 @@
 //! Texts of the game in English.
 
 use super::Words;
-use super::{percent_below, tenths_above};
+use super::{percent_below, percent_of_limit, tenths_above};
 use crate::input::{Action, InputMethod};
 use crate::settings::Quality;
 use force_feedback::{Ability, Stop};
@@ -41,21 +41,24 @@ pub(super) const WORDS: Words = Words {
         parts.extend(wish.seconds.map(|most| format!("within {most} s")));
         parts.extend(
             wish.kept
-                .map(|least| format!("keep at least {:.0} %", 100.0 * least)),
+                .map(|least| format!("keep at least {} %", percent_of_limit(least))),
         );
         parts.extend(wish.pieces.map(|least| format!("at least {least} pieces")));
         parts.join(", ")
     },
     summary: |outcome| {
         [
-            ("Time", format!("{:.1} s", outcome.seconds())),
-            ("Left of it", format!("{:.0} %", 100.0 * outcome.kept)),
-            ("In the basket", format!("{:.0} %", 100.0 * outcome.inside)),
+            ("Time", format!("{:.1} s", tenths_above(outcome.seconds()))),
+            ("Left of it", format!("{} %", percent_below(outcome.kept))),
+            (
+                "In the basket",
+                format!("{} %", percent_below(outcome.inside)),
+            ),
             ("Pieces", outcome.pieces.to_string()),
         ]
     },
     new_best: "New best!",
-    hopeless: "Too little of it is left to win.",
+    hopeless: "Not enough of the body is left to win.",
     watch: "Watch",
     race: "Race it",
     save: "Save replay",
@@ -173,7 +176,7 @@ pub(super) const WORDS: Words = Words {
     controls: "Controls",
     press_any: "Press a key or button…",
     reset: "Restore default settings",
-    reset_question: "Restore all settings to their defaults?",
+    reset_question: "Restore the default settings? Language and accessibility stay.",
     reset_now: "Restore",
     cancel: "Cancel",
     sound_section: "Sound",
@@ -261,27 +264,29 @@ pub(super) const WORDS: Words = Words {
         parts.extend(wish.seconds.map(|most| format!("{most} s")));
         parts.extend(
             wish.kept
-                .map(|least| format!("keep {:.0} %", 100.0 * least)),
+                .map(|least| format!("keep {} %", percent_of_limit(least))),
         );
         parts.extend(wish.pieces.map(|least| format!("{least} pieces")));
         parts.join(", ")
     },
-    share: |found, needed| format!("{} / {:.0} %", percent_below(found), 100.0 * needed),
+    share: |found, needed| format!("{} / {} %", percent_below(found), percent_of_limit(needed)),
     share_in_basket: |found, needed| {
         let found = percent_below(found);
-        format!("in the basket: {found} of {:.0} %", 100.0 * needed)
+        format!("in the basket: {found} of {} %", percent_of_limit(needed))
     },
     near_miss: |wish, outcome| {
-        let seconds = wish.seconds.filter(|most| outcome.seconds() > *most);
-        let kept = wish.kept.filter(|least| outcome.kept < *least);
-        let pieces = wish.pieces.filter(|least| outcome.pieces < *least);
+        let missed = outcome.misses(wish);
         let parts = [
-            seconds.map(|_| format!("{:.1} s", tenths_above(outcome.seconds()))),
-            kept.map(|least| {
+            missed
+                .seconds
+                .map(|_| format!("{:.1} s", tenths_above(outcome.seconds()))),
+            missed.kept.map(|least| {
                 let found = percent_below(outcome.kept);
-                format!("{found} of {:.0} %", 100.0 * least)
+                format!("{found} of {} %", percent_of_limit(least))
             }),
-            pieces.map(|least| format!("{} of {least}", outcome.pieces)),
+            missed
+                .pieces
+                .map(|least| format!("{} of {least}", outcome.pieces)),
         ];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         (!parts.is_empty()).then(|| parts.join(", "))
@@ -293,20 +298,21 @@ pub(super) const WORDS: Words = Words {
         Quality::Medium => "Medium",
         Quality::Low => "Low",
     },
-    quality_lowered: "This device draws slowly, so the picture quality was lowered. You can change it in Settings.",
-    drawing_slow: "This device draws slowly. A lower picture quality (in Settings) or a smaller window helps.",
+    quality_lowered: "The picture quality was lowered to keep the game smooth. You can change it in Settings.",
+    drawing_slow: "The picture is not smooth. A lower picture quality (in Settings) or a smaller window helps.",
     two_players: "Two players",
     who_plays: |[arrows, letters]| {
         [
             format!("First hand: mouse, or {arrows}"),
             format!("Second hand: {letters}"),
-            "Stick or pad: its Second player button takes the second hand.".into(),
+            "Stick or pad: press \"Second player\" to move the second hand.".into(),
             "Touch screen: in a 2D round, tap the two dots. Another finger then moves the second hand.".into(),
         ]
     },
     play_as_two: "Play as two",
     play_alone: "Play alone",
-    no_letter_keys: "Only arrow keys are set for moving. Choose letter keys for the second player in Settings, Controls.",
+    no_arrow_keys: "The first player has no arrow key for each direction. Choose them in Settings, Controls.",
+    no_letter_keys: "The second player has no letter key for each direction. Choose them in Settings, Controls.",
     one_hand: "This level has only one hand, so one player plays.",
 };
 
@@ -336,7 +342,7 @@ fn import_note(note: &ImportNote) -> String {
             format!("{file} falls into {pieces} pieces.{how}")
         }
         NoteKind::Surroundings { .. } => {
-            format!("{file}: what lies along the edge of the picture is left out.")
+            format!("{file}: everything that touches the edge of the picture is left out.")
         }
         NoteKind::Specks { .. } => format!("{file}: small specks are left out."),
         _ => note.to_string(),

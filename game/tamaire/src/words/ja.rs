@@ -1,7 +1,7 @@
 //! Texts of the game in Japanese (日本語).
 
 use super::Words;
-use super::{percent_below, tenths_above};
+use super::{percent_below, percent_of_limit, tenths_above};
 use crate::input::{Action, InputMethod};
 use crate::settings::Quality;
 use force_feedback::{Ability, Stop};
@@ -43,16 +43,19 @@ pub(super) const WORDS: Words = Words {
         parts.extend(wish.seconds.map(|most| format!("{most}秒以内")));
         parts.extend(
             wish.kept
-                .map(|least| format!("{:.0}％以上のこす", 100.0 * least)),
+                .map(|least| format!("{}％以上のこす", percent_of_limit(least))),
         );
         parts.extend(wish.pieces.map(|least| format!("{least}こ以上にわける")));
         parts.join("・")
     },
     summary: |outcome| {
         [
-            ("タイム", format!("{:.1}秒", outcome.seconds())),
-            ("のこり", format!("{:.0}％", 100.0 * outcome.kept)),
-            ("かごの中", format!("{:.0}％", 100.0 * outcome.inside)),
+            (
+                "タイム",
+                format!("{:.1}秒", tenths_above(outcome.seconds())),
+            ),
+            ("のこり", format!("{}％", percent_below(outcome.kept))),
+            ("かごの中", format!("{}％", percent_below(outcome.inside))),
             ("かけら", format!("{}こ", outcome.pieces)),
         ]
     },
@@ -60,11 +63,11 @@ pub(super) const WORDS: Words = Words {
     hopeless: "のこりが たりなくて、もうクリアできないよ。",
     watch: "見る",
     race: "きょうそう",
-    save: "リプレイをのこす",
+    save: "リプレイを保存",
     delete: "けす",
     confirm: "けしていい？",
     remove_level: "リストからはずす",
-    saved: "のこしました",
+    saved: "保存しました",
     open_folder: "フォルダーをひらく",
     folder_not_opened: "フォルダーを ひらけませんでした：",
     slow: |share| {
@@ -81,7 +84,7 @@ pub(super) const WORDS: Words = Words {
     link_error,
     offered: "リプレイが とどきました！",
     download: "ダウンロード",
-    no_replays: "リプレイは まだありません。ひとやすみのときか クリアしたあとに のこせます。ファイルを ここに おとしても いいよ。",
+    no_replays: "リプレイは まだありません。ひとやすみのときか クリアしたあとに 保存できます。ファイルを ここに おとしても いいよ。",
     open: "ひらく…",
     what_opens: "ステージ・絵・モデル・リプレイ",
     no_dialog: "このパソコンでは ファイルをえらぶ画面が 出せません。ファイルを ゲームの上に おとしてね。",
@@ -173,7 +176,7 @@ pub(super) const WORDS: Words = Words {
     controls: "操作",
     press_any: "キーかボタンをおしてね…",
     reset: "初期設定にもどす",
-    reset_question: "設定を ぜんぶ はじめの状態に もどしますか？",
+    reset_question: "設定を はじめの状態に もどしますか？ ことばとアクセシビリティは そのままです。",
     reset_now: "もどす",
     cancel: "やめる",
     sound_section: "音",
@@ -243,7 +246,7 @@ pub(super) const WORDS: Words = Words {
     damaged: |refused, aside| match aside {
         Some(aside) => {
             format!(
-                "読めないところがありました：{refused}。もとのファイルは {aside} にのこしました。"
+                "読めないところがありました：{refused}。もとのファイルは {aside} に保存しました。"
             )
         }
         None => format!("読めませんでした：{refused}。"),
@@ -263,24 +266,26 @@ pub(super) const WORDS: Words = Words {
         parts.extend(wish.seconds.map(|most| format!("{most}秒")));
         parts.extend(
             wish.kept
-                .map(|least| format!("{:.0}％のこす", 100.0 * least)),
+                .map(|least| format!("{}％のこす", percent_of_limit(least))),
         );
         parts.extend(wish.pieces.map(|least| format!("{least}こ")));
         parts.join("・")
     },
-    share: |found, needed| format!("{}／{:.0}％", percent_below(found), 100.0 * needed),
+    share: |found, needed| format!("{}／{}％", percent_below(found), percent_of_limit(needed)),
     share_in_basket: |found, needed| {
         let found = percent_below(found);
-        format!("かごの中：{found}％（目標 {:.0}％）", 100.0 * needed)
+        format!("かごの中：{found}％（目標 {}％）", percent_of_limit(needed))
     },
     near_miss: |wish, outcome| {
-        let seconds = wish.seconds.filter(|most| outcome.seconds() > *most);
-        let kept = wish.kept.filter(|least| outcome.kept < *least);
-        let pieces = wish.pieces.filter(|least| outcome.pieces < *least);
+        let missed = outcome.misses(wish);
         let parts = [
-            seconds.map(|_| format!("{:.1}秒だった", tenths_above(outcome.seconds()))),
-            kept.map(|_| format!("{}％だった", percent_below(outcome.kept))),
-            pieces.map(|_| format!("{}こだった", outcome.pieces)),
+            missed
+                .seconds
+                .map(|_| format!("{:.1}秒だった", tenths_above(outcome.seconds()))),
+            missed
+                .kept
+                .map(|_| format!("{}％だった", percent_below(outcome.kept))),
+            missed.pieces.map(|_| format!("{}こだった", outcome.pieces)),
         ];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         (!parts.is_empty()).then(|| parts.join("・"))
@@ -292,21 +297,22 @@ pub(super) const WORDS: Words = Words {
         Quality::Medium => "中",
         Quality::Low => "低",
     },
-    quality_lowered: "絵をかくのに時間がかかるので、画質を下げました。設定で変えられます。",
-    drawing_slow: "絵をかくのに時間がかかっています。設定で画質を下げるか、ウィンドウを小さくすると よくなります。",
+    quality_lowered: "動きがなめらかになるように、画質を下げました。設定で変えられます。",
+    drawing_slow: "動きが なめらかではありません。設定で画質を下げるか、ウィンドウを小さくすると、なめらかになります。",
     two_players: "ふたりであそぶ",
     who_plays: |[arrows, letters]| {
         [
             format!("ひとつめの手：マウス、または {arrows}"),
             format!("ふたつめの手：{letters}"),
             "スティックやパッド：「ふたりで」のボタンで ふたつめの手を動かせます。".into(),
-            "タッチ画面：2Dのステージで 二つの点をおすと、二本目の指で ふたつめの手を動かせます。"
+            "タッチスクリーン：2Dのステージで ふたつの点をおすと、もう一本の指で ふたつめの手を動かせます。"
                 .into(),
         ]
     },
     play_as_two: "ふたりで はじめる",
     play_alone: "ひとりで あそぶ",
-    no_letter_keys: "動かすキーが矢印だけです。設定の「操作」で、ふたりめの人の文字キーをえらんでください。",
+    no_arrow_keys: "ひとりめの人の矢印キーが たりません。設定の「操作」でえらんでください。",
+    no_letter_keys: "ふたりめの人の文字キーが たりません。設定の「操作」でえらんでください。",
     one_hand: "このステージの手は ひとつだけなので、ひとりであそびます。",
 };
 

@@ -76,6 +76,12 @@ fn percent_below(share: f32) -> u32 {
     (100.0 * share + 1e-4).floor() as u32
 }
 
+/// Returns a limit in percent with all of its digits, for example 62.5 for 0.625.
+fn percent_of_limit(share: f32) -> f64 {
+    // Rounding removes the error of single precision: 0.29 × 100 is less than 29.
+    (1e3 * f64::from(100.0 * share)).round() / 1e3
+}
+
 /// Returns a time in tenths of a second, rounded up, so that a time above a limit never looks like the limit.
 fn tenths_above(seconds: f32) -> f32 {
     (10.0 * seconds - 1e-3).ceil() / 10.0
@@ -121,6 +127,32 @@ mod tests {
             assert_eq!(told(Language::Japanese).as_deref(), japanese);
         }
         assert_eq!((Language::English.words().share)(0.29, 0.6), "29 / 60 %");
+        for (limit, expected) in [(0.625, "62.5"), (0.29, "29"), (0.9, "90"), (1.0, "100")] {
+            assert_eq!(percent_of_limit(limit).to_string(), expected);
+        }
+        let kept = wish(None, Some(0.625), None);
+        assert_eq!(
+            (Language::English.words().wish)(&kept),
+            "keep at least 62.5 %"
+        );
+        assert_eq!((Language::Japanese.words().goal)(&kept), "62.5％のこす");
         assert_eq!((Language::English.words().share)(0.5999, 0.6), "59 / 60 %");
+    }
+
+    #[test]
+    fn summary_agrees_with_the_missed_figures() {
+        let outcome = Outcome {
+            ticks: 1201,
+            route: Route::Shave,
+            kept: 0.8999,
+            inside: 0.5999,
+            pieces: 3,
+            lost: 0,
+        };
+        let values = |language: Language| (language.words().summary)(&outcome).map(|row| row.1);
+        let english = ["20.1 s", "89 %", "59 %", "3"].map(String::from);
+        let japanese = ["20.1秒", "89％", "59％", "3こ"].map(String::from);
+        assert_eq!(values(Language::English), english);
+        assert_eq!(values(Language::Japanese), japanese);
     }
 }

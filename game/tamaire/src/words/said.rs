@@ -145,6 +145,8 @@ pub struct Words {
     pub who_plays: fn(&[String; 2]) -> [String; 4],
     pub play_as_two: &'static str,
     pub play_alone: &'static str,
+    /// Missing keys of one of two players at a keyboard.
+    pub no_arrow_keys: &'static str,
     pub no_letter_keys: &'static str,
     pub one_hand: &'static str,
 }

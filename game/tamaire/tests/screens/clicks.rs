@@ -529,6 +529,40 @@ fn two_players_screen_parts_the_keyboard() {
 }
 
 #[test]
+fn two_players_screen_names_the_missing_keys() {
+    let said = Language::English.words();
+    for (key, action, told, other) in [
+        (
+            Key::A,
+            Action::Left,
+            said.no_letter_keys,
+            said.no_arrow_keys,
+        ),
+        (
+            Key::ArrowLeft,
+            Action::Left,
+            said.no_arrow_keys,
+            said.no_letter_keys,
+        ),
+    ] {
+        let mut window = window(Files::nowhere());
+        click(&mut window, "Two players");
+        assert!(window.query_by_label(told).is_none());
+        // The action has another key that belongs to the other player, so it needs no key in exchange.
+        let bindings = &mut game(&mut window).settings.bindings;
+        assert_eq!(bindings.of_key(key), Some(action));
+        bindings.bind_key(Action::Elements, key);
+        frames(&mut window, 2);
+        window.get_by_label(told);
+        assert!(window.query_by_label(other).is_none());
+        let as_two = button(&window, "Play as two");
+        assert!(as_two.accesskit_node().is_disabled());
+        click(&mut window, "Play alone");
+        assert_eq!(screen(&window), Screen::Levels);
+    }
+}
+
+#[test]
 fn goals_are_listed_in_pause_and_ticked_off() {
     let mut window = window(Files::nowhere());
     start(&mut window, "biscuit");

@@ -3,11 +3,13 @@
 use crate::window::*;
 use app_shell::theme::contrast;
 use egui::{Color32, Pos2, Shape, vec2};
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa_render::frame::ElementColour;
 use std::collections::BTreeSet;
 use tamaire::game::Screen;
-use tamaire::platform::Files;
+use tamaire::platform::{Files, OpenRequest};
 use tamaire::words::Language;
+use tamaire_play::link::address;
 
 /// Least contrast of text [WCAG 2.2, level AA].
 const LEAST: f32 = 4.5;
@@ -129,6 +131,7 @@ fn all_texts_have_contrast_in_both_themes() {
             let mut count = 0;
             for screen in [
                 Screen::Title,
+                Screen::Together,
                 Screen::Levels,
                 Screen::Settings,
                 Screen::Forces,
@@ -158,10 +161,59 @@ fn all_texts_have_contrast_in_both_themes() {
             wait_for_files(&mut window);
             assert!(check(&mut window, "Result") > 20);
             let replay = game(&mut window).bout.round().replay();
+            let link = address("https://example.org/play/", &replay.link().unwrap());
             game(&mut window).watch(replay.into()).unwrap();
             frames(&mut window, 3);
             assert!(check(&mut window, "Watching") > 5);
+            game(&mut window).open_link(&link);
+            frames(&mut window, 3);
+            assert_eq!(screen(&window), Screen::Offered);
+            assert!(check(&mut window, "Offered") > 5);
             game(&mut window).notices.clear();
+        }
+    }
+}
+
+/// Level without a floor, out of which the body falls.
+const BOTTOMLESS: &str = r#"
+dim = 2
+gravity = [0.0, -3.0, 0.0]
+view = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]]
+[game]
+name = { en = "Bottomless" }
+basket = { centre = [1.0, 0.0, 0.0], half = [0.5, 0.5, 0.0] }
+[[body]]
+shape = "ball"
+n = 8
+width = 0.6
+at = [-0.3, -0.3, 0.0]
+[[hand]]
+radius = 0.09
+path = [[0.0, -1.4, 0.0, 0.0]]
+"#;
+
+#[test]
+fn hopeless_round_is_told_with_contrast_in_windows_of_any_shape() {
+    let folder = folder();
+    let path = folder.path().join("bottomless.toml");
+    std::fs::write(&path, BOTTOMLESS).unwrap();
+    for size in [vec2(1280.0, 800.0), vec2(390.0, 844.0)] {
+        let mut window = open(Files::nowhere(), size, 0.25);
+        game(&mut window).open(OpenRequest::at(&path));
+        (0..150).for_each(|_| game(&mut window).update(DEFAULT_TICK));
+        for (language, _) in Language::ALL {
+            game(&mut window).settings.language = language;
+            frames(&mut window, 3);
+            let told = language.words().hopeless;
+            let room = window.ctx.content_rect();
+            let is_told = flat(window.output()).iter().any(|(shape, _)| match shape {
+                Shape::Text(text) if text.galley.text() == told => {
+                    room.contains_rect(text.visual_bounding_rect())
+                }
+                _ => false,
+            });
+            assert!(is_told, "{language:?} at {size}");
+            check(&mut window, &format!("hopeless at {size}"));
         }
     }
 }

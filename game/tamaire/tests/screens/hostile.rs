@@ -193,7 +193,40 @@ fn buttons_fit_into_width_of_small_windows_with_large_text() {
                     let fits = room.left() <= rect.left() && rect.right() <= room.right();
                     assert!(fits, "{screen:?}: {rect:?} in {room:?}");
                 }
+                last_button(&window).scroll_to_me();
+                frames(&mut window, 20);
+                let last = last_button(&window).rect();
+                let is_seen = room.expand(1.0).contains_rect(last);
+                assert!(is_seen, "{screen:?}: {last:?} in {room:?}");
             }
+        }
+    }
+}
+
+fn last_button(window: &Window) -> egui_kittest::Node<'_> {
+    let mut buttons: Vec<_> = window.get_all_by_role(Role::Button).collect();
+    buttons.pop().expect("the screen has buttons")
+}
+
+#[test]
+fn replay_bar_has_two_rows_in_narrow_window() {
+    for (size, is_narrow) in [([390.0, 844.0], true), ([960.0, 600.0], false)] {
+        let mut window = open(Files::nowhere(), egui::Vec2::from(size), 0.5);
+        game(&mut window).start(0);
+        frames(&mut window, 20);
+        let replay = game(&mut window).bout.round().replay();
+        game(&mut window).watch(replay.into()).unwrap();
+        frames(&mut window, 3);
+        let room = window.ctx.content_rect();
+        let slider = window.get_by_role(Role::Slider).rect();
+        let speeds = window.get_all_by_role(Role::RadioButton);
+        let speeds: Vec<_> = speeds.map(|speed| speed.rect()).collect();
+        assert_eq!(speeds.len(), 4);
+        assert!(room.contains_rect(slider) && slider.width() >= 60.0);
+        for speed in speeds {
+            assert!(room.contains_rect(speed), "{speed:?} in {room:?}");
+            assert!(!speed.intersects(slider), "{speed:?} and {slider:?}");
+            assert_eq!(speed.top() > slider.bottom(), is_narrow);
         }
     }
 }

@@ -8,6 +8,7 @@ use egui_kittest::kittest::Queryable;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, ThreadId};
 use std::time::SystemTime;
@@ -75,7 +76,7 @@ impl Storage for Memory {
         Ok(())
     }
 
-    fn location(&self, _: Kind, name: &str) -> String {
+    fn location(&self, _: Kind, name: &str) -> PathBuf {
         name.into()
     }
 
@@ -83,8 +84,12 @@ impl Storage for Memory {
         true
     }
 
-    fn open_folder_of(&self, location: &str) -> io::Result<()> {
-        self.0.lock().unwrap().opened.push(location.into());
+    fn open_folder_of(&self, location: &Path) -> io::Result<()> {
+        self.0
+            .lock()
+            .unwrap()
+            .opened
+            .push(location.display().to_string());
         Ok(())
     }
 }

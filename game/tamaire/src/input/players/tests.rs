@@ -450,3 +450,54 @@ fn hand_glides_around_body() {
         assert!(tick < 240, "the hand stays at {here}");
     }
 }
+
+#[test]
+fn whole_keyboard_moves_the_only_hand_of_a_level() {
+    let step = PACE * DEFAULT_TICK;
+    for second in [InputSource::Keys, InputSource::LetterKeys] {
+        for key in [Key::D, Key::ArrowRight] {
+            let mut players = Players::default();
+            players.join(second);
+            let devices = Devices {
+                keys: [key].into_iter().collect(),
+                ..Devices::default()
+            };
+            let targets = [HANDS[0]];
+            let hands = hands(&targets);
+            let bindings = Bindings::default();
+            let frame = players.frame(&devices, &bindings, &MANNER, &hands, DEFAULT_TICK);
+            assert_near(frame.goal(0), [-1.0 + step, 0.0]);
+            assert_eq!(players.second(), Some(second), "the player stays");
+        }
+    }
+}
+
+#[test]
+fn gliding_hand_far_from_bodies_seldom_looks_at_them() {
+    let count = std::cell::Cell::new(0);
+    // A wall of bodies at x = 0.
+    let distance = |position: Vec3| {
+        count.set(count.get() + 1);
+        -position.x
+    };
+    let mut players = Players::default();
+    let devices = Devices {
+        pointer: Some(Vec3::new(1.0, 0.0, 0.0)),
+        ..Devices::default()
+    };
+    let mut here = HANDS[0];
+    for _ in 0..120 {
+        let targets = [here];
+        let hands = Hands {
+            targets: &targets,
+            radius: 0.1,
+            distance_to_bodies: &distance,
+        };
+        let bindings = Bindings::default();
+        let frame = players.frame(&devices, &bindings, &MANNER, &hands, DEFAULT_TICK);
+        here = frame.goal(0).expect("the pointer sets a goal");
+        assert!(here.x <= -0.1 - GAP + 1e-4, "{here}");
+    }
+    assert!(here.x > -0.3, "the hand has come near: {here}");
+    assert!(count.get() < 8 * 120 / 2, "{} looks", count.get());
+}

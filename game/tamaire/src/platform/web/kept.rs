@@ -5,6 +5,7 @@ use super::host;
 use crate::platform::storage::{Entry, Kind, Storage, UpdateEntry};
 use std::collections::BTreeMap;
 use std::io;
+use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, SystemTime};
 
@@ -73,7 +74,7 @@ impl Storage for BrowserStorage {
     fn change(&self, kind: Kind, name: &str, change: &mut UpdateEntry) -> io::Result<()> {
         let Some(beginning) = beginning(kind) else {
             if let Some(bytes) = change(None) {
-                host().download(&self.location(kind, name), media(kind), &bytes);
+                host().download(&file_name(kind, name), media(kind), &bytes);
             }
             return Ok(());
         };
@@ -95,8 +96,8 @@ impl Storage for BrowserStorage {
         Ok(())
     }
 
-    fn location(&self, kind: Kind, name: &str) -> String {
-        format!("{name}.{}", ending(kind))
+    fn location(&self, kind: Kind, name: &str) -> PathBuf {
+        file_name(kind, name).into()
     }
 
     fn can_export(&self) -> bool {
@@ -105,7 +106,7 @@ impl Storage for BrowserStorage {
 
     fn export(&self, kind: Kind, name: &str) -> io::Result<()> {
         let bytes = self.read(kind, name)?.ok_or(io::ErrorKind::NotFound)?;
-        host().download(&self.location(kind, name), media(kind), &bytes);
+        host().download(&file_name(kind, name), media(kind), &bytes);
         Ok(())
     }
 
@@ -129,6 +130,11 @@ pub(super) fn refused(reason: String) -> io::Error {
 fn beginning(kind: Kind) -> Option<String> {
     let (_, word) = KINDS.iter().find(|(known, _)| *known == kind)?;
     Some(format!("{word}/"))
+}
+
+/// Returns the name of the file in which an entry is downloaded.
+fn file_name(kind: Kind, name: &str) -> String {
+    format!("{name}.{}", ending(kind))
 }
 
 fn ending(kind: Kind) -> &'static str {
