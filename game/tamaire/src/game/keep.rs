@@ -1,8 +1,7 @@
 //! Saving and loading, and the messages about them.
 
 use super::{Game, Screen};
-use crate::platform::{Damage, Entry, Kind, StorageEvent};
-use std::path::Path;
+use crate::platform::{Damage, Entry, Kind, Location, StorageEvent};
 use std::sync::Arc;
 use tamaire_play::{Replay, ReplayError};
 
@@ -71,7 +70,7 @@ impl Game {
     }
 
     /// Opens the folder of the file saved at `location` in the system's file manager.
-    pub fn open_folder_of(&mut self, location: &Path) {
+    pub fn open_folder_of(&mut self, location: &Location) {
         if let Err(error) = self.files.open_folder_of(location) {
             self.notify(format!("{} {error}", self.words().folder_not_opened));
         }

@@ -1,6 +1,6 @@
 //! Short messages to the player.
 
-use std::path::PathBuf;
+use crate::platform::Location;
 use tamaire_play::shortened;
 
 /// Minimum display time of a message [s].
@@ -18,7 +18,7 @@ pub struct Notice {
     /// Text of the message.
     pub text: String,
     /// Location of a saved file, whose folder a button opens.
-    pub saved: Option<PathBuf>,
+    pub saved: Option<Location>,
     /// Remaining display time [s].
     pub seconds: f32,
 }
@@ -43,7 +43,7 @@ impl Notices {
     }
 
     /// Adds a message with a button that opens the folder of the file saved at `location`.
-    pub(super) fn tell_of_saved(&mut self, text: &str, location: PathBuf) {
+    pub(super) fn tell_of_saved(&mut self, text: &str, location: Location) {
         self.tell(text);
         if let Some(notice) = self.0.last_mut() {
             notice.saved = Some(location);

@@ -53,4 +53,4 @@ pub use machine::{StandFolder, TextFile, memory};
 pub use pictures::Pictures;
 pub use screen::{address_of_page, fill_screen, full_screen_of_page, restart, set_language};
 pub use sound::Sound;
-pub use storage::{Entry, Kind, Nowhere, Storage, UpdateEntry};
+pub use storage::{Entry, Kind, Location, Nowhere, Storage, UpdateEntry};

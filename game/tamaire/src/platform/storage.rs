@@ -5,6 +5,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+/// Location of an entry: the path of its file, or its name.
+pub type Location = PathBuf;
+
 /// Kind of a stored entry.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
@@ -72,8 +75,8 @@ pub trait Storage: Send + Sync {
     /// The error of the system.
     fn remove(&self, kind: Kind, name: &str) -> io::Result<()>;
 
-    /// Location of an entry: the path of its file, or its name.
-    fn location(&self, kind: Kind, name: &str) -> PathBuf;
+    /// Returns the location of an entry.
+    fn location(&self, kind: Kind, name: &str) -> Location;
 
     /// Whether entries can be given to the player as files. False if entries are files already.
     fn can_export(&self) -> bool {

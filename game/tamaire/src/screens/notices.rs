@@ -2,9 +2,9 @@
 
 use super::{hud, result};
 use crate::game::{Game, Notice, Screen};
+use crate::platform::Location;
 use app_shell::widgets::{ButtonStyle, button};
 use egui::{Color32, FontId, Painter, Pos2, Rect, Ui, pos2, vec2};
-use std::path::{Path, PathBuf};
 use tamaire_sound::Menu;
 
 /// Size of the progress bar [points].
@@ -17,7 +17,7 @@ const BUTTON: egui::Vec2 = vec2(170.0, 38.0);
 struct Shown {
     text: String,
     /// Location of a saved file.
-    saved: Option<PathBuf>,
+    saved: Option<Location>,
     /// Remaining display time [s].
     left: f32,
 }
@@ -117,7 +117,7 @@ fn draw(painter: &Painter, notice: &Shown, top: Pos2, width: f32, scale: f32) ->
 
 /// Shows the button that opens the folder of the file saved at `location`, with the middle of its lower edge at
 /// `below`. Returns whether it was pressed.
-fn open_folder(game: &Game, ui: &Ui, location: &Path, below: Pos2) -> bool {
+fn open_folder(game: &Game, ui: &Ui, location: &Location, below: Pos2) -> bool {
     let corner = below - vec2(0.5 * BUTTON.x, BUTTON.y);
     // One layer above the notices, which have no area of their own and would be drawn over an area.
     let area = egui::Area::new(egui::Id::unique(("open folder", location)))
