@@ -182,7 +182,9 @@ fn stick_force_3d_follows_camera_orientation() {
         table.game.bout.camera.orbit(turn, 0.0);
         let mut share = 0.0;
         table.until("pushed back", |table| {
-            share += if share < 1.0 { 0.01 } else { 0.0 };
+            // The hand glides to the stick's position first.
+            let begins = table.game.controls.players.is_picked_up(0) && share < 1.0;
+            share += if begins { 0.01 } else { 0.0 };
             // Path of the hand from in front of the ball to the ball's centre [m], and the deflection of the
             // stick that moves the hand there.
             let [x, z] = [-0.6, 0.7 - 1.1 * share];

@@ -59,7 +59,6 @@ fn every_command_survives_closed_pipes_and_tells_of_full_disks() {
 fn files_stay_intact_on_full_disks() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    write_logbook(folder);
     for (option, name) in [
         ("save", "it.tamaire"),
         ("film", "it.gif"),
@@ -70,7 +69,4 @@ fn files_stay_intact_on_full_disks() {
         let arguments = format!("{SHORT} --{option} {name}");
         check_files(PROGRAM, folder, &arguments, &[name]);
     }
-    fs::create_dir(folder.join("report")).unwrap();
-    let report = "report visits.sqlite --no-clips --csv --json";
-    check_files(PROGRAM, folder, report, &["report/index.html"]);
 }

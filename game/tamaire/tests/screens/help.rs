@@ -172,9 +172,10 @@ fn single_switch_is_never_trapped() {
     assert!(game(&mut window).settings.scanning.is_on());
     game(&mut window).settings.speed = 0.6;
     click(&mut window, "Restore default settings");
+    frames(&mut window, 2);
+    assert!(button(&window, "Cancel").is_focused());
     // The question waits longer than any other confirmation, because a single switch is slow.
     frames(&mut window, 400);
-    assert!(button(&window, "Cancel").is_focused());
     click(&mut window, "Cancel");
     assert_eq!(
         game(&mut window).settings.speed,

@@ -212,6 +212,7 @@ fn last_button(window: &Window) -> egui_kittest::Node<'_> {
 fn replay_bar_has_two_rows_in_narrow_window() {
     for (size, is_narrow) in [([390.0, 844.0], true), ([960.0, 600.0], false)] {
         let mut window = open(Files::nowhere(), egui::Vec2::from(size), 0.5);
+        game(&mut window).settings.text_size = if is_narrow { 1.6 } else { 1.0 };
         game(&mut window).start(0);
         frames(&mut window, 20);
         let replay = game(&mut window).bout.round().replay();

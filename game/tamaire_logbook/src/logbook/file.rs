@@ -117,7 +117,10 @@ fn connect_for_reading(path: &Path) -> Result<(Connection, Option<TempDir>), Err
             let connection = connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
             return Ok((connection, None));
         }
-        let (folder, copy) = copied(path).map_err(|error| unusable(path, &error))?;
+        let (folder, copy) = copied(path).map_err(|error| Error::Unusable {
+            path: path.into(),
+            reason: format!("no copy could be made in the temporary folder: {error}"),
+        })?;
         if state()? == before {
             let connection = connect(&copy, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
             return Ok((connection, Some(folder)));

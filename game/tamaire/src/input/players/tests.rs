@@ -385,8 +385,8 @@ fn hand_of_stick_glides_on_into_body() {
     let goals = follow(&mut players, (&deflected, &PLACES), HANDS[0], 120);
     let steps = goals.windows(2).map(|pair| (pair[1] - pair[0]).length());
     // The last step is up to the radius at which the hand is picked up.
-    let glide = GLIDE * DEFAULT_TICK + 1e-5;
-    assert!(steps.filter(|&step| step > glide).count() <= 1);
+    let glide = GLIDE * DEFAULT_TICK + 1e-3;
+    assert!(steps.filter(|&step| step > glide).count() <= 1, "{goals:?}");
     assert!(goals[1].x < -0.5 && goals[120].x > 0.0, "{goals:?}");
     assert!(players.is_picked_up(0));
 }
