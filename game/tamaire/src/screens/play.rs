@@ -67,6 +67,7 @@ const LEAST_SCALE: f32 = 0.6;
 
 /// Notes the part of the screen that the cards of a result leave free at a stand. From the next frame on, the
 /// basket is shown in its middle, so that no card covers the winner.
+#[cfg(not(target_family = "wasm"))] // Browsers have no stands.
 pub(super) fn note_free_part(ui: &Ui, free: Rect) {
     ui.data_mut(|data| data.insert_temp(free_part(), free));
 }
