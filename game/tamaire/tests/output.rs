@@ -5,7 +5,6 @@
 mod programs;
 
 use programs::{check_files, check_output};
-use std::fs;
 use std::path::Path;
 use tamaire_logbook::{Entry, Id, Logbook, Moment, Visit};
 
