@@ -166,11 +166,13 @@ export class Visit {
 
   /** Wins the level Classic by pushing the body into the basket. @param {(x: number, y: number) => Promise<void>} point */
   async win(point) {
+    const { ticks: start } = await this.report();
     for (let push = 0; push < 4000; push++) {
       const report = await this.report();
       if (report.is_won || report.screen === "Result") return;
-      // Uses the game's time, which runs slower on a slow machine.
-      const x = Math.min(-1.4 + (0.6 * report.ticks) / 60, 0.85);
+      // Uses the game's time, which runs slower on a slow machine. The pointer comes from the left, so that it
+      // picks up the hand before it reaches the body.
+      const x = Math.min(-1.4 + (0.6 * (report.ticks - start)) / 60, 0.85);
       await point(...(await this.at(x, 0)));
       await seconds(0.02);
     }
