@@ -66,14 +66,20 @@ pub fn check_output(program: &str, folder: &Path, arguments: &str) {
         .stdout(full)
         .output()
         .unwrap();
-    let text = said(&output);
-    let code = output.status.code();
-    assert!(code.is_some_and(|code| code != 0), "{arguments}: {text}");
-    assert!(!text.contains("panicked"), "{arguments}: {text}");
+    let text = failure(&output, arguments);
     assert!(
         text.contains("standard output: No space left on device"),
         "{arguments}: {text}"
     );
+}
+
+/// Checks that a command failed without a panic, and returns its messages.
+fn failure(output: &Output, arguments: &str) -> String {
+    let text = said(output);
+    let code = output.status.code();
+    assert!(code.is_some_and(|code| code != 0), "{arguments}: {text}");
+    assert!(!text.contains("panicked"), "{arguments}: {text}");
+    text
 }
 
 /// Checks that a command that writes `files` of more than a kilobyte fails if the disk has no room for the last
@@ -93,10 +99,7 @@ pub fn check_files(program: &str, folder: &Path, arguments: &str, files: &[&str]
         .args(inner.get_args())
         .output()
         .unwrap();
-    let text = said(&output);
-    let code = output.status.code();
-    assert!(code.is_some_and(|code| code != 0), "{arguments}: {text}");
-    assert!(!text.contains("panicked"), "{arguments}: {text}");
+    let text = failure(&output, arguments);
     let last = files.last().unwrap();
     assert!(
         text.contains(last) && text.contains("File too large"),

@@ -114,22 +114,7 @@ mod tests {
     use tamaire_play::{InputFrame, Level};
 
     /// Level without a floor.
-    const BOTTOMLESS: &str = r#"
-dim = 2
-gravity = [0.0, -3.0, 0.0]
-view = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]]
-[game]
-name = { en = "Bottomless" }
-basket = { centre = [1.0, 0.0, 0.0], half = [0.5, 0.5, 0.0] }
-[[body]]
-shape = "ball"
-n = 8
-width = 0.6
-at = [-0.3, -0.3, 0.0]
-[[hand]]
-radius = 0.09
-path = [[0.0, -1.4, 0.0, 0.0]]
-"#;
+    const BOTTOMLESS: &str = include_str!("../../tests/bottomless.toml");
 
     fn level(text: &str) -> Level {
         let none = |_: &str| Err(std::io::ErrorKind::NotFound.into());

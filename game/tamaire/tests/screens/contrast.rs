@@ -175,22 +175,7 @@ fn all_texts_have_contrast_in_both_themes() {
 }
 
 /// Level without a floor, out of which the body falls.
-const BOTTOMLESS: &str = r#"
-dim = 2
-gravity = [0.0, -3.0, 0.0]
-view = [[-1.6, -1.0, 0.0], [1.6, 1.0, 0.0]]
-[game]
-name = { en = "Bottomless" }
-basket = { centre = [1.0, 0.0, 0.0], half = [0.5, 0.5, 0.0] }
-[[body]]
-shape = "ball"
-n = 8
-width = 0.6
-at = [-0.3, -0.3, 0.0]
-[[hand]]
-radius = 0.09
-path = [[0.0, -1.4, 0.0, 0.0]]
-"#;
+const BOTTOMLESS: &str = include_str!("../bottomless.toml");
 
 #[test]
 fn hopeless_round_is_told_with_contrast_in_windows_of_any_shape() {
