@@ -21,20 +21,38 @@ const DRAWN: f32 = 0.5;
 /// Minimum darkness of ink, in units of the paper's brightness. It is above the noise of a photo.
 const LEAST_DARK: f32 = 0.15;
 
-/// Returns which pixels of a drawing are ink: clearly darker or more coloured than the paper around them.
-/// Transparent pixels are blended with white paper.
-pub(super) fn ink(size: [usize; 2], pixels: &[[u8; 4]]) -> Mask {
-    let pixels: Vec<[u8; 3]> = pixels.iter().map(|&pixel| on_white(pixel)).collect();
+/// Ink of a drawing, and the colours of all pixels as if the paper were white.
+pub(super) struct Drawing {
+    /// Pixels of ink: clearly darker or more coloured than the paper around them.
+    pub ink: Mask,
+    /// Red, green and blue, row by row from the top.
+    pub colours: Vec<[u8; 3]>,
+}
+
+/// Finds the ink of a drawing. Transparent pixels are blended with white paper.
+pub(super) fn drawing(size: [usize; 2], pixels: &[[u8; 4]]) -> Drawing {
+    let mut pixels: Vec<[u8; 3]> = pixels.iter().map(|&pixel| on_white(pixel)).collect();
     let paper = Paper::of(size, &pixels);
     let [width, _] = size;
-    let darkness: Vec<u8> = pixels
-        .iter()
-        .enumerate()
-        .map(|(at, &pixel)| darkness(pixel, paper.colour(at % width, at / width)))
-        .collect();
+    let mut darkness_of = |(at, pixel): (usize, &mut [u8; 3])| {
+        let paper = paper.colour(at % width, at / width);
+        let darkness = darkness(*pixel, paper);
+        *pixel = on_white_paper(*pixel, paper);
+        darkness
+    };
+    let pixels_mut = pixels.iter_mut().enumerate();
+    let darkness: Vec<u8> = pixels_mut.map(&mut darkness_of).collect();
     let limit = limit(&darkness);
     let on = darkness.iter().map(|&dark| dark > limit).collect();
-    Mask { size, on }
+    Drawing {
+        ink: Mask { size, on },
+        colours: pixels,
+    }
+}
+
+/// Returns the colour that a pixel would have on white paper in full light.
+fn on_white_paper(pixel: [u8; 3], paper: [f32; 3]) -> [u8; 3] {
+    [0, 1, 2].map(|k| (255.0 * f32::from(pixel[k]) / paper[k].max(1.0)).min(255.0) as u8)
 }
 
 fn on_white([red, green, blue, alpha]: [u8; 4]) -> [u8; 3] {

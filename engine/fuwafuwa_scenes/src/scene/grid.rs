@@ -20,6 +20,7 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
     let expected = "only for a picture whose content is not embedded yet";
     require(text.fill.is_none(), "fill", expected)?;
     require(text.plain.is_none(), "plain", expected)?;
+    require(text.keep_colours.is_none(), "keep_colours", expected)?;
     let expected = "only a .vox file has parts with names";
     require(
         text.model.is_none() || text.file.is_some(),
