@@ -6,7 +6,7 @@ mod room;
 use crate::Route;
 use frame::BodySize;
 use fuwafuwa::inspect::Hash;
-use fuwafuwa::{Dim, Dim2, Dim3, Shape, Vec3, World};
+use fuwafuwa::{Dim, Dim2, Dim3, Shape, Vec3, VoxelGrid, World};
 use fuwafuwa_scenes::import::FileType;
 use fuwafuwa_scenes::scene::{
     BodyText, Fetch, GameText, MAX_TEXT_BYTES, MotionTypeText, RigidBodyText, Scene, SceneError,
@@ -22,13 +22,14 @@ pub struct Level {
     pub id: String,
     scene: Scene,
     game: GameText,
+    colours: Vec<Option<[u8; 3]>>,
     /// The [`Start`] in the level's dimension. The world is built at first use and then copied, because
     /// copying is far faster than building.
     start: Arc<OnceLock<Box<dyn Any + Send + Sync>>>,
 }
 
-/// World at the start, and basket.
-type Start<D> = (World<D>, Option<Shape<D>>);
+/// World at the start, basket, and the tints of each body.
+type Start<D> = (World<D>, Option<Shape<D>>, Vec<Option<VoxelGrid<D>>>);
 
 impl PartialEq for Level {
     fn eq(&self, other: &Self) -> bool {
@@ -210,7 +211,9 @@ impl Level {
         let name = file_name(id);
         if let Some(body) = level.scene.body.first_mut() {
             (body.shape, body.file) = (None, Some(name.into()));
-            if level.scene.dim == 3 {
+            if level.scene.dim == 2 {
+                body.keep_colours = Some(true);
+            } else {
                 // Takes the resolution from the model, and gives all colours of the model the soft material.
                 let all = (1..=u8::MAX).map(|index| (index.to_string(), 1));
                 (body.n, body.colours) = (None, all.collect());
@@ -281,6 +284,7 @@ impl Level {
         let (id, start) = (id.into(), Arc::default());
         let level = Self {
             id,
+            colours: scene.colours(),
             scene,
             game,
             start,
@@ -306,6 +310,27 @@ impl Level {
     /// Returns the table `[game]`.
     pub fn game(&self) -> &GameText {
         &self.game
+    }
+
+    /// Returns the colour of each material, number 1 first; `None` takes that of the palette. See
+    /// [`Scene::colours`].
+    pub fn colours(&self) -> &[Option<[u8; 3]>] {
+        &self.colours
+    }
+
+    /// Returns the voxels of each body by the material numbers that decide their colours, for renderers; see
+    /// [`Scene::tint_grids`]. Empty if the level has another dimension.
+    pub fn tint_grids<D: Dim>(&self) -> &[Option<VoxelGrid<D>>] {
+        let is_of_dim = usize::from(self.scene.dim) == D::N;
+        let start = is_of_dim.then(|| self.start::<D>()).and_then(Result::ok);
+        start.map_or(&[], |start| start.2.as_slice())
+    }
+
+    /// Returns whether a body was made from a picture that is not part of the game.
+    pub fn is_drawing(&self, body: usize) -> bool {
+        let is_file = |body: &BodyText| body.file.is_some();
+        let is_built_in = NAMED.iter().any(|(id, _)| *id == self.id);
+        self.scene.dim == 2 && !is_built_in && self.scene.body.get(body).is_some_and(is_file)
     }
 
     /// Returns the routes by which the level can be won. A level without a basket has none, and a level in
@@ -339,14 +364,14 @@ impl Level {
     }
 
     /// Returns a copy of the world at the start, and the basket.
-    pub(crate) fn build<D: Dim>(&self) -> Start<D> {
+    pub(crate) fn build<D: Dim>(&self) -> (World<D>, Option<Shape<D>>) {
         let start = self.start::<D>();
-        start
-            .expect("tests build built-in levels, from_scene other levels")
-            .clone()
+        let (world, basket, _) =
+            start.expect("tests build built-in levels, from_scene other levels");
+        (world.clone(), *basket)
     }
 
-    /// Returns the world at the start and the basket. The world is built at the first call.
+    /// Returns the world at the start, the basket, and the tints. The world is built at the first call.
     fn start<D: Dim>(&self) -> Result<&Start<D>, SceneError> {
         let known = match self.start.get() {
             Some(known) => known,
@@ -354,6 +379,7 @@ impl Level {
                 let start: Start<D> = (
                     self.scene.build_within(most_voxels::<D>(&self.scene))?,
                     self.scene.basket::<D>()?,
+                    self.scene.tint_grids::<D>()?,
                 );
                 self.start.get_or_init(|| Box::new(start))
             }

@@ -3,7 +3,9 @@
 use super::confetti::Confetti;
 use super::feelings::{Feeling, MoodInput};
 use app_shell::CameraRig;
-use fuwafuwa::{Contact, Dim, DimVector, Event, NodeId, ObjectRef, Shape, SoftBody, Vec3};
+use fuwafuwa::{
+    Contact, Dim, DimVector, Event, NodeId, ObjectRef, Shape, SoftBody, Vec3, VoxelGrid,
+};
 use tamaire_play::{AnyRound, Round};
 
 /// Maximum number of particles.
@@ -127,7 +129,12 @@ impl Effects {
             let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
             *self = Self {
                 pressures: vec![0.0; bodies.clone().count()],
-                feelings: bodies.map(|(_, body)| Feeling::new(body, eye)).collect(),
+                feelings: bodies
+                    .enumerate()
+                    .map(|(place, (_, body))| {
+                        Feeling::new(body, eye, round.level().is_drawing(place))
+                    })
+                    .collect(),
                 gravity: Vec3::from(round.level().scene().gravity),
                 room: round.level().arena(),
                 axes: D::N,
@@ -165,7 +172,10 @@ impl Effects {
                     camera.shake(0.002 + 0.002 * energy.clamp(0.0, 2.0));
                     if looked_up < LOOKED_UP {
                         looked_up += 1;
-                        material = material_at(&world[body], point);
+                        let grids = round.level().tint_grids::<D>();
+                        let grid = grids.get(rank).and_then(Option::as_ref);
+                        let body = &world[body];
+                        material = material_at(body, grid.unwrap_or(body.grid()), point);
                     }
                     let count = if still { 1 } else { DUST };
                     (0..count).for_each(|_| self.spawn_dust(point.to_vec3(), material));
@@ -291,8 +301,9 @@ impl Effects {
     }
 }
 
-/// Returns the material of `body` at its node nearest to `at` [m].
-fn material_at<D: Dim>(body: &SoftBody<D>, at: D::Vector) -> u8 {
+/// Returns the number in `grid` at the node of `body` nearest to `at` [m]. `grid` is that of the body, or has its
+/// tints.
+fn material_at<D: Dim>(body: &SoftBody<D>, grid: &VoxelGrid<D>, at: D::Vector) -> u8 {
     let mesh = body.mesh();
     let square = |id: NodeId| {
         let position = body.node_state(id).0;
@@ -305,9 +316,7 @@ fn material_at<D: Dim>(body: &SoftBody<D>, at: D::Vector) -> u8 {
         .map(|(id, _)| (square(id), id))
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let element = nearest.and_then(|(_, id)| mesh.carriers_of(id).next());
-    element.map_or(1, |(element, _)| {
-        body.grid().material(mesh.first_voxel(element))
-    })
+    element.map_or(1, |(element, _)| grid.material(mesh.first_voxel(element)))
 }
 
 #[cfg(test)]
@@ -378,7 +387,7 @@ mod tests {
         };
         let materials = round.world().soft_bodies().map(|(_, body)| {
             let middle = body.piece_views()[0].centre;
-            material_at(body, middle.truncate())
+            material_at(body, body.grid(), middle.truncate())
         });
         assert_eq!(materials.collect::<Vec<_>>(), [1, 2]);
     }
