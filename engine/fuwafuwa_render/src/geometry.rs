@@ -192,9 +192,9 @@ mod tests {
             let [x, y, _] = at.map(|k| (k as f32 + 0.45) * voxel);
             assert_eq!(colour_at(&geometry, Vec2::new(x, y)), expected, "{at:?}");
         }
-        // Beyond the upper side, which the skin may smooth, the colour goes on.
-        let beyond = colour_at(&geometry, Vec2::new(0.5, 1.0 + 0.4 * voxel));
-        assert_eq!(beyond, bytes(palette.material(3), 1.0));
+        // Beyond the lower side, which the skin may smooth, the colour goes on.
+        let beyond = colour_at(&geometry, Vec2::new(0.5, -0.4 * voxel));
+        assert_eq!(beyond, bytes(palette.material(1), 1.0));
         // A grid of another size belongs to another body.
         let other = [Some(VoxelGrid::<Dim2>::ball(8, 1.0).unwrap())];
         let frame = Frame {

@@ -117,10 +117,11 @@ impl SkinMesh {
         let Some(element) = body.mesh().element(view.id) else {
             return;
         };
-        let half = element.cell.width();
+        let cell = element.cell;
         for ((low, width), corners) in blocks::<Dim2>(view.level, view.children).zip(fills(view)) {
-            let side = (width * half / 2).max(1);
-            let start = add(element.cell.at, scale(low, half).map(|k| k / 2));
+            // Corners of blocks are given in half widths of the cell.
+            let side = width * cell.width() / 2;
+            let start = add(scale(cell.at, 2), low).map(|k| k * cell.width() / 2);
             let place = |[x, y]: [f32; 2]| {
                 let [u, v] = [x, y].map(|k| k / side as f32);
                 let [a, b, c, d] = corners;
