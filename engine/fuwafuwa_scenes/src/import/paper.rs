@@ -35,9 +35,9 @@ pub(super) fn drawing(size: [usize; 2], pixels: &[[u8; 4]]) -> Drawing {
     let paper = Paper::of(size, &pixels);
     let [width, _] = size;
     let mut darkness_of = |(at, pixel): (usize, &mut [u8; 3])| {
-        let paper = paper.colour(at % width, at / width);
-        let darkness = darkness(*pixel, paper);
-        *pixel = on_white_paper(*pixel, paper);
+        let (column, row) = (at % width, at / width);
+        let darkness = darkness(*pixel, paper.colour(column, row));
+        *pixel = on_white_paper(*pixel, paper.light(column, row));
         darkness
     };
     let pixels_mut = pixels.iter_mut().enumerate();
@@ -100,6 +100,9 @@ struct Paper {
     tiles: [usize; 2],
     /// Red, green and blue in each tile, row by row.
     colours: Vec<[f32; 3]>,
+    /// Red, green and blue of the paper's trend in each tile. Unlike `colours`, it does not follow large areas
+    /// of crayon.
+    trends: Vec<[f32; 3]>,
 }
 
 impl Paper {
@@ -107,6 +110,7 @@ impl Paper {
         let tile = size[0].max(size[1]).div_ceil(TILES).max(LEAST_TILE);
         let tiles = size.map(|side| side.div_ceil(tile));
         let mut colours = vec![[0.0; 3]; tiles[0] * tiles[1]];
+        let mut trends = colours.clone();
         for channel in 0..3 {
             let mut bright = vec![[0usize; 256]; colours.len()];
             for (at, pixel) in pixels.iter().enumerate() {
@@ -121,9 +125,10 @@ impl Paper {
                     .clamp(0.0, 255.0);
                 let is_paper = bright >= LEAST_BRIGHT * trend;
                 colour[channel] = if is_paper { bright } else { trend };
+                trends[at][channel] = trend;
             }
         }
-        for colour in &mut colours {
+        for colour in colours.iter_mut().chain(&mut trends) {
             let [red, green, blue] = *colour;
             if red.max(green).max(blue) < LEAST_PAPER {
                 *colour = [255.0; 3];
@@ -133,14 +138,24 @@ impl Paper {
             tile,
             tiles,
             colours,
+            trends,
         }
     }
 
     /// Returns the colour of the paper at a pixel, interpolated between the centres of the nearest tiles.
     fn colour(&self, column: usize, row: usize) -> [f32; 3] {
+        self.interpolated(&self.colours, column, row)
+    }
+
+    /// Returns the trend of the paper's colour at a pixel: the light that falls on the paper there.
+    fn light(&self, column: usize, row: usize) -> [f32; 3] {
+        self.interpolated(&self.trends, column, row)
+    }
+
+    fn interpolated(&self, tiles: &[[f32; 3]], column: usize, row: usize) -> [f32; 3] {
         let ([left, right], x) = self.near(0, column);
         let ([top, bottom], y) = self.near(1, row);
-        let of = |column: usize, row: usize| self.colours[row * self.tiles[0] + column];
+        let of = |column: usize, row: usize| tiles[row * self.tiles[0] + column];
         let corners = [
             of(left, top),
             of(right, top),

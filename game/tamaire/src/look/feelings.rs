@@ -394,7 +394,8 @@ mod tests {
             (48.0 * feeling.at.truncate(), 48.0 * feeling.size)
         };
         let (at, size) = face(true);
-        assert!((at - Vec2::new(24.0, 46.0)).length() < 2.0, "{at}");
+        // Inside a head of this size, nodes are up to four voxels apart.
+        assert!((at - Vec2::new(24.0, 46.0)).length() < 3.0, "{at}");
         assert!(
             (5.0..9.0).contains(&size),
             "the head has a radius of 8: {size}"
