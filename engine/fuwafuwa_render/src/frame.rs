@@ -2,8 +2,9 @@
 
 use crate::palette::{Colour, Palette};
 use crate::space;
-use fuwafuwa::{Dim, Dim2, Dim3, PieceId, Shape, World};
+use fuwafuwa::{Dim, Dim2, Dim3, PieceId, Shape, SoftBody, VoxelGrid, World};
 use glam::{Vec2, Vec3};
+use std::borrow::Cow;
 
 /// Everything besides the world that determines a picture. For a 3D picture, `C` is [`space::Camera`].
 #[derive(Clone, Debug)]
@@ -12,6 +13,8 @@ pub struct Frame<'a, C: DimCamera = Camera> {
     pub camera: C,
     /// Colours.
     pub palette: &'a Palette,
+    /// Colours that the scene gives to its materials.
+    pub tints: Tints<'a, C::Dim>,
     /// View of the bodies: their skin or their elements.
     pub look: Look<'a>,
     /// Target region of the game, if any.
@@ -41,11 +44,49 @@ impl<'a, C: DimCamera> Frame<'a, C> {
         self.seconds.rem_euclid(CYCLE) as f32
     }
 
+    /// Returns the voxels of a body by the material numbers that decide its colours; `place` is its index in
+    /// the world.
+    pub(crate) fn numbers<'b>(
+        &self,
+        place: usize,
+        body: &'b SoftBody<C::Dim>,
+    ) -> &'b VoxelGrid<C::Dim>
+    where
+        'a: 'b,
+    {
+        let grid = self.tints.grids.get(place).and_then(Option::as_ref);
+        let own = body.grid();
+        grid.filter(|grid| grid.size() == own.size()).unwrap_or(own)
+    }
+
+    /// Returns the colour of a material number.
+    pub(crate) fn colour(&self, number: u8) -> Colour {
+        let index = usize::from(number).wrapping_sub(1);
+        match self.tints.colours.get(index) {
+            Some(Some(colour)) => colour.map(|channel| f32::from(channel) / 255.0),
+            _ => self.palette.material(number),
+        }
+    }
+
+    /// Returns the colours of all material numbers, number 1 first.
+    pub(crate) fn colours(&self) -> Cow<'a, [Colour]> {
+        let own = self.tints.colours;
+        let all = &self.palette.materials;
+        match own.iter().any(Option::is_some) {
+            false => Cow::Borrowed(all),
+            true => {
+                let count = own.len().max(all.len()).min(u8::MAX.into()) as u8;
+                Cow::Owned((1..=count).map(|number| self.colour(number)).collect())
+            }
+        }
+    }
+
     /// Creates a frame that shows the skin of a world and nothing else.
     pub fn new(camera: C, palette: &'a Palette) -> Self {
         Self {
             camera,
             palette,
+            tints: Tints::default(),
             look: Look::Skin,
             basket: None,
             particles: &[],
@@ -53,6 +94,26 @@ impl<'a, C: DimCamera> Frame<'a, C> {
             ghost: None,
             props: &[],
             seconds: 0.0,
+        }
+    }
+}
+
+/// Colours that a scene gives to its materials, in place of those of the palette. Empty by default.
+#[derive(Copy, Clone, Debug)]
+pub struct Tints<'a, D: Dim> {
+    /// Colour of each material, number 1 first: red, green and blue, 0 to 255 (sRGB). `None` takes the colour
+    /// of the palette.
+    pub colours: &'a [Option<[u8; 3]>],
+    /// For each body of the world, its voxels by the material numbers that decide the colours. `None`, or a
+    /// grid of another size than the body's, takes the numbers of the body.
+    pub grids: &'a [Option<VoxelGrid<D>>],
+}
+
+impl<D: Dim> Default for Tints<'_, D> {
+    fn default() -> Self {
+        Self {
+            colours: &[],
+            grids: &[],
         }
     }
 }

@@ -45,7 +45,7 @@ mod stairs;
 
 pub use ages::Ages;
 pub use anchor::{Anchor, anchor, anchor_at};
-pub use frame::{Basket, Camera, DimCamera, Frame, Look, Mark, Particle, Prop, Sticker};
+pub use frame::{Basket, Camera, DimCamera, Frame, Look, Mark, Particle, Prop, Sticker, Tints};
 pub use geometry::Geometry;
 #[cfg(feature = "gpu")]
 pub use gpu::Renderer;

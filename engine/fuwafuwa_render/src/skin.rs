@@ -4,8 +4,8 @@ use crate::elements::fills;
 use crate::rings::{Outlines, sides, strain};
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::inspect::slot_index;
-use fuwafuwa::inspect::{corner, scale};
-use fuwafuwa::{Dim, Dim2, ElementView, SoftBody};
+use fuwafuwa::inspect::{add, blocks, corner, scale};
+use fuwafuwa::{Dim, Dim2, ElementView, SoftBody, VoxelGrid};
 use glam::Vec2;
 
 /// Maximum area of a piece that counts as a crumb [areas of a voxel].
@@ -100,6 +100,78 @@ impl SkinMesh {
     pub fn add_element(&mut self, view: &ElementView, colour: [u8; 4]) {
         for round in fills(view) {
             self.add_quad(round, colour, 0.0);
+        }
+    }
+
+    /// Adds the colours of the voxels that an element covers, except where they have the number `first`.
+    /// `numbers` has the number of each voxel. Towards empty voxels, colours extend by a voxel, because the
+    /// outline is smoothed. Stair steps between two colours are cut at 45°.
+    pub fn add_tints(
+        &mut self,
+        view: &ElementView,
+        body: &SoftBody<Dim2>,
+        numbers: &VoxelGrid<Dim2>,
+        first: u8,
+        colour: impl Fn(u8) -> [u8; 4],
+    ) {
+        let Some(element) = body.mesh().element(view.id) else {
+            return;
+        };
+        let cell = element.cell;
+        for ((low, width), corners) in blocks::<Dim2>(view.level, view.children).zip(fills(view)) {
+            // Corners of blocks are given in half widths of the cell.
+            let side = width * cell.width() / 2;
+            let start = add(scale(cell.at, 2), low).map(|k| k * cell.width() / 2);
+            let place = |[x, y]: [f32; 2]| {
+                let [u, v] = [x, y].map(|k| k / side as f32);
+                let [a, b, c, d] = corners;
+                a.lerp(b, u).lerp(d.lerp(c, u), v)
+            };
+            for y in 0..side {
+                for x in 0..side {
+                    let voxel = [start[0] + x, start[1] + y, 0];
+                    let corner = [x as f32, y as f32];
+                    self.add_tint(numbers, voxel, first, &colour, |[u, v]| {
+                        place([corner[0] + u, corner[1] + v])
+                    });
+                }
+            }
+        }
+    }
+
+    /// Adds the colour of a voxel. `place` returns the position [m] of a point of the voxel, 0 to 1 on both
+    /// axes.
+    fn add_tint(
+        &mut self,
+        numbers: &VoxelGrid<Dim2>,
+        voxel: [i32; 3],
+        first: u8,
+        colour: &impl Fn(u8) -> [u8; 4],
+        place: impl Fn([f32; 2]) -> Vec2,
+    ) {
+        let near = |[dx, dy]: [i32; 2]| numbers.material([voxel[0] + dx, voxel[1] + dy, 0]);
+        let own = near([0, 0]);
+        let beside = [[1, 0], [0, 1], [-1, 0], [0, -1]].map(near);
+        if own != first {
+            let beyond = beside.map(|number| if number == 0 { 1.0 } else { 0.0 });
+            let [right, up, left, down] = beyond;
+            let round = [
+                [-left, -down],
+                [1.0 + right, -down],
+                [1.0 + right, 1.0 + up],
+                [-left, 1.0 + up],
+            ];
+            self.add_quad(round.map(&place), colour(own), 0.0);
+        }
+        for k in 0..4 {
+            let [here, next, after, last] = [0, 1, 2, 3].map(|by| beside[(k + by) % 4]);
+            let is_step = here == next && here != own && here != 0 && after != here && last != here;
+            if is_step {
+                // Corner between the sides `k` and `k + 1`, and the middles of these sides.
+                let turn = |[u, v]: [f32; 2]| (0..k).fold([u, v], |[u, v], _| [1.0 - v, u]);
+                let [from, corner, to] = [[1.0, 0.5], [1.0, 1.0], [0.5, 1.0]].map(turn).map(&place);
+                self.add_quad([from, corner, to, to], colour(here), 0.0);
+            }
         }
     }
 

@@ -16,6 +16,7 @@ mod paper;
 mod photo;
 mod picture;
 mod png;
+mod tints;
 mod vox;
 
 pub use self::colours::Colours;

@@ -10,6 +10,7 @@
 //!
 //! [[material]]                    # number 2
 //! young = 50000.0
+//! colour = [90, 140, 220]         # red, green, blue, 0 to 255; by default from the renderer's palette
 //!
 //! [[body]]
 //! shape = "ball"                  # or box, ring, heart, flower, empty
@@ -29,6 +30,7 @@
 //! file = "cat.png"                # a picture, in 3D a MagicaVoxel model; relative to the folder of the scene
 //! n = 48                          # maximum number of voxels on the longer side
 //! fill = true                     # closed outlines of a drawing are filled (default)
+//! keep_colours = false            # true: a drawing keeps its colours, as tints of its material
 //! plain = false                   # true: pixels count as they are, with their margin, as for pixel art
 //! colours = { "#d04030" = 1, "#ffffff" = 0 }   # colour = material; models also take palette indices: "79" = 2
 //!
@@ -81,6 +83,7 @@ mod error;
 mod game;
 mod grid;
 mod joint;
+mod materials;
 mod rigid_body;
 mod shapes;
 mod state;
@@ -98,8 +101,9 @@ pub use shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, Obstac
 use crate::import::ImportNote;
 use budget::Budget;
 use error::{FieldError, Origin, require, vector_of};
-use fuwafuwa::{DEFAULT_TICK, Dim, MIN_TICK, Material, Shape, World, WorldConfig};
+use fuwafuwa::{DEFAULT_TICK, Dim, MIN_TICK, Material, Shape, VoxelGrid, World, WorldConfig};
 use joint::JointTargets;
+use materials::SceneMaterials;
 use serde::{Deserialize, Serialize};
 
 /// Maximum size of a scene file [bytes].
@@ -246,16 +250,17 @@ impl Scene {
         self.build_within(MAX_VOXELS)
     }
 
-    /// Builds the world, with at most `most_voxels` voxels in the grids of all bodies together.
+    /// Builds the world, with at most `most_solid` solid voxels in all bodies together. Their grids may have
+    /// eight times as many voxels, solid or empty, but not more than [`MAX_VOXELS`].
     ///
     /// # Errors
     /// Same errors as [`Scene::build`].
-    pub fn build_within<D: Dim>(&self, most_voxels: usize) -> Result<World<D>, SceneError> {
-        self.try_build(most_voxels)
+    pub fn build_within<D: Dim>(&self, most_solid: usize) -> Result<World<D>, SceneError> {
+        self.try_build(most_solid)
             .map_err(|wrong| self.origin.error(wrong))
     }
 
-    fn try_build<D: Dim>(&self, most_voxels: usize) -> Result<World<D>, FieldError> {
+    fn try_build<D: Dim>(&self, most_solid: usize) -> Result<World<D>, FieldError> {
         self.check_dim()?;
         let expected = format!("expected {}, found {}", D::N, self.dim);
         require(usize::from(self.dim) == D::N, "dim", expected)?;
@@ -285,7 +290,7 @@ impl Scene {
             let checked = text.check();
             checked.map_err(|wrong| wrong.inside("material", index))?;
         }
-        let materials = self.materials();
+        let materials = SceneMaterials::of(&self.material);
         let count = self.body.len();
         let expected = format!("expected {MAX_BODIES} bodies at most, found {count}");
         require(count <= MAX_BODIES, "body", expected)?;
@@ -299,7 +304,7 @@ impl Scene {
             let expected = format!("expected {MAX_RIGID} at most, found {count}");
             require(count <= MAX_RIGID, field, expected)?;
         }
-        let mut budget = Budget::of_scene(most_voxels);
+        let mut budget = Budget::of_scene(most_solid);
         for (index, text) in self.body.iter().enumerate() {
             let added = text.add_to(&mut world, &materials, &mut budget);
             added.map_err(|wrong| wrong.inside("body", index))?;
@@ -355,7 +360,7 @@ impl Scene {
         let mut budget = Budget::of_scene(MAX_VOXELS);
         // Skips bodies beyond the limit: the build rejects the scene because of them.
         for (index, body) in self.body.iter_mut().enumerate().take(MAX_BODIES) {
-            let embedded = body.embed_file(self.dim, fetch, &mut budget);
+            let embedded = body.embed_file(self.dim, fetch, &mut budget, &mut self.material);
             let notes = embedded.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;
             self.origin.notes.extend(notes);
         }
@@ -371,6 +376,32 @@ impl Scene {
     /// Returns the materials, number 1 first.
     pub fn materials(&self) -> Vec<Material> {
         self.material.iter().map(MaterialText::material).collect()
+    }
+
+    /// Returns the colour of each material, number 1 first: red, green and blue, 0 to 255 (sRGB). `None`
+    /// leaves the colour to the renderer.
+    pub fn colours(&self) -> Vec<Option<[u8; 3]>> {
+        self.material.iter().map(|text| text.colour).collect()
+    }
+
+    /// Returns the voxels of each body by the material numbers of the scene, tints included, for renderers.
+    /// In the world itself, a tint has the number of the material from which it differs only in its colour.
+    /// `None` for a body without tints.
+    ///
+    /// # Errors
+    /// Same errors as [`Scene::build`].
+    pub fn tint_grids<D: Dim>(&self) -> Result<Vec<Option<VoxelGrid<D>>>, SceneError> {
+        let materials = SceneMaterials::of(&self.material);
+        let mut budget = Budget::of_scene(MAX_VOXELS);
+        let bodies = self.body.iter().enumerate().map(|(index, body)| {
+            if !materials.has_tints() || body.state.is_some() {
+                return Ok(None);
+            }
+            let grid = grid::of::<D>(body, &mut budget);
+            let grid = grid.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;
+            Ok(Some(grid).filter(|grid| materials.are_tints_in(grid)))
+        });
+        bodies.collect()
     }
 
     /// Returns the target position of each hand at the end of a tick [m].

@@ -500,12 +500,14 @@ fn box_around_the_solid_voxels_is_limited() {
 fn scene_names_its_limit_and_the_size_of_the_model() {
     let text = "dim = 3\n[[body]]\nfile = \"a.vox\"\n";
     let mut scene = Scene::read("toy.toml", text, &[]).unwrap();
-    let corners = [[0, 0, 0, 1], [19, 9, 4, 1]];
-    let bytes = vox_file::model([20, 10, 5], &corners);
+    // A cube of 10³ voxels, and a dot that does not count although it doubles the box.
+    let cube = (0..1000).map(|k| [k % 10, k / 10 % 10, k / 100, 1].map(|k: u16| k as u8));
+    let voxels: Vec<_> = cube.chain([[19, 9, 9, 1]]).collect();
+    let bytes = vox_file::model([20, 10, 10], &voxels);
     scene.embed_files(&|_| Ok(bytes.clone())).unwrap();
-    assert!(scene.build_within::<Dim3>(1000).is_ok());
-    let error = scene.build_within::<Dim3>(512).unwrap_err().to_string();
-    let expected = "expected 512 voxels at most in the grids of all bodies together, found 1000, of which 20 x 10 x 5 in this model; make the model smaller, to 80 % of its width, or use a part of it with model = \"name\"";
+    assert!(scene.build_within::<Dim3>(1001).is_ok());
+    let error = scene.build_within::<Dim3>(513).unwrap_err().to_string();
+    let expected = "expected 513 solid voxels at most in all bodies together, found 1001, of which 1001 in this model; make the model smaller, to 80 % of its width, or use a part of it with model = \"name\"";
     assert!(error.ends_with(expected), "{error}");
 }
 

@@ -446,3 +446,262 @@ fn paper_with_transparent_corners_is_paper() {
     assert_eq!(sprite.grid.size(), [50, 50, 1]);
     assert!(count(&sprite.grid) > 0.98 * 2500.0);
 }
+
+const RED: [f64; 3] = [214.0, 40.0, 44.0];
+const BLUE: [f64; 3] = [40.0, 90.0, 200.0];
+const YELLOW: [f64; 3] = [250.0, 214.0, 40.0];
+
+/// A figure 480 pixels high: a head of paper with two eyes in a black outline, a red body and blue legs.
+fn coloured_figure() -> Sheet {
+    let mut sheet = Sheet::new([400, 560], WHITE);
+    sheet.disc(RED, [200.0, 310.0], 110.0);
+    for side in [-60.0, 60.0] {
+        sheet.line(BLUE, [200.0 + side, 390.0], [200.0 + side, 505.0], 50.0);
+    }
+    sheet.disc(WHITE, [200.0, 140.0], 90.0);
+    sheet.circle(BLACK, [200.0, 140.0], 90.0, 12.0, 0.0);
+    for side in [-35.0, 35.0] {
+        sheet.disc(BLACK, [200.0 + side, 130.0], 12.0);
+    }
+    sheet
+}
+
+fn import_tinted(bytes: &[u8], across: usize) -> (VoxelGrid<Dim2>, Vec<[u8; 3]>) {
+    let options = PictureOptions {
+        across,
+        ..PictureOptions::default()
+    };
+    let picture = Picture::decode("test.png", bytes).unwrap();
+    let (tinted, tints) = picture.import_tinted(&options).unwrap();
+    // Tints change neither the shape nor the notes.
+    let plain = picture.import(&options).unwrap();
+    assert_eq!(tinted.notes, plain.notes);
+    let solid = |grid: &VoxelGrid<Dim2>| -> Vec<bool> {
+        grid.voxels().map(|voxel| grid.is_solid(voxel)).collect()
+    };
+    assert_eq!(solid(&tinted.grid), solid(&plain.grid));
+    (tinted.grid, tints)
+}
+
+/// Returns whether a tint is a drawn colour, mixed with a little of the colour of skin.
+fn is_tint_of(tint: [u8; 3], drawn: [f64; 3]) -> bool {
+    (0..3).all(|k| (f64::from(tint[k]) - drawn[k]).abs() < 60.0)
+}
+
+#[test]
+fn import_tinted_keeps_colours_of_crayons_paper_and_pen() {
+    let clean = coloured_figure();
+    let mut photo = coloured_figure();
+    photo.photographed(0.55, 6.0);
+    for sheet in [clean, photo] {
+        let (grid, tints) = import_tinted(&sheet.png(), 60);
+        assert_eq!(tints.len(), 4, "{tints:?}");
+        let at = |x: f64, y: f64| {
+            // The figure lies between the rows 44 and 530, and voxels are as high as 60 of them.
+            let voxel = (530.0 - 44.0) / 60.0;
+            let left = 0.5 * f64::from(grid.size()[0]);
+            let (x, y) = ((x - 200.0) / voxel + left, (530.0 - y) / voxel);
+            tints[usize::from(grid.material([x as i32, y as i32, 0])) - 1]
+        };
+        for (place, drawn) in [
+            ([200.0, 310.0], RED),
+            ([120.0, 310.0], RED),
+            ([140.0, 470.0], BLUE),
+            ([200.0, 170.0], WHITE),
+            ([165.0, 130.0], BLACK),
+            ([235.0, 130.0], BLACK),
+            ([200.0, 52.0], BLACK),
+        ] {
+            let found = at(place[0], place[1]);
+            assert!(is_tint_of(found, drawn), "{place:?}: {found:?}");
+        }
+        // The most frequent tint comes first: of the body with 110² π pixels less what the head covers.
+        assert!(is_tint_of(tints[0], RED), "{tints:?}");
+    }
+}
+
+#[test]
+fn import_tinted_gives_silhouette_of_one_pen_no_tints() {
+    for (ink, expected) in [
+        (BLACK, None),
+        ([50.0, 50.0, 60.0], None),
+        (RED, Some(RED)),
+        (YELLOW, Some(YELLOW)),
+    ] {
+        let mut sheet = Sheet::new([300, 300], WHITE);
+        sheet.disc(ink, [150.0, 150.0], 100.0);
+        let (grid, tints) = import_tinted(&sheet.png(), 40);
+        assert_eq!(tints.len(), usize::from(expected.is_some()), "{ink:?}");
+        assert!(
+            tints
+                .iter()
+                .zip(expected)
+                .all(|(&tint, ink)| is_tint_of(tint, ink))
+        );
+        assert!(materials(&grid).iter().all(|&number| number <= 1));
+    }
+}
+
+#[test]
+fn import_tinted_finds_six_tints_at_most() {
+    let colours = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| [0, 1, 2].map(|bit| 220 * (k >> bit & 1)));
+    let mut pixels = Vec::new();
+    for at in 0..80 * 80 {
+        let [red, green, blue] = colours[at % 80 / 10].map(|channel| channel as u8);
+        // A transparent row makes the picture a sprite, in which white counts, too.
+        pixels.extend([red, green, blue, if at < 80 { 0 } else { 255 }]);
+    }
+    let (grid, tints) = import_tinted(&png_of(80, 80, &pixels), 80);
+    assert_eq!(tints.len(), 6);
+    let numbers = materials(&grid);
+    assert!((1..=6).all(|number| numbers.contains(&number)));
+    assert_eq!(numbers.iter().max(), Some(&6));
+}
+
+#[test]
+fn import_tinted_colours_thickened_strokes_like_their_ink() {
+    let mut sheet = Sheet::new([600, 600], WHITE);
+    // A pen of 4 pixels in voxels of 25.
+    sheet.line(BLUE, [50.0, 550.0], [550.0, 50.0], 4.0);
+    let (grid, tints) = import_tinted(&sheet.png(), 20);
+    assert!(tints.len() == 1 && is_tint_of(tints[0], BLUE), "{tints:?}");
+    assert!(count(&grid) >= 20.0);
+}
+
+/// Returns a scene in which a hand tears a body from a picture, with its files embedded.
+fn torn_scene(fields: &str, bytes: &[u8]) -> Scene {
+    let text = format!(
+        "dim = 2\ngravity = [0.0, 0.0, 0.0]\n[[material]]\nyoung = 4000.0\n[[material]]\nyoung = 6000.0\nstrength = 600.0\n\
+         [[body]]\nfile = \"a drawing\"\nn = 40\n{fields}\n[[obstacle]]\n\
+         half_space = {{ normal = [-1.0, 0.0, 0.0], point = [1.0, 0.0, 0.0] }}\n[[hand]]\nradius = 0.05\n\
+         path = [[0.0, -0.2, 0.6, 0.0], [1.0, 0.9, 0.4, 0.0]]\n"
+    );
+    let mut scene = Scene::read("toy.toml", &text, &[]).unwrap();
+    scene.embed_files(&|_| Ok(bytes.to_vec())).unwrap();
+    scene
+}
+
+#[test]
+fn tints_do_not_change_motion() {
+    let bytes = coloured_figure().png();
+    let mut worlds = ["material = 2", "material = 2\nkeep_colours = true"].map(|fields| {
+        let scene = torn_scene(fields, &bytes);
+        (scene.build::<Dim2>().unwrap(), scene)
+    });
+    let mut split = 0;
+    for tick in 0..90 {
+        let states = worlds.each_mut().map(|(world, scene)| {
+            scene.set_hand_targets(world, tick);
+            world.step();
+            let (_, body) = world.soft_bodies().next().unwrap();
+            split = body.pieces().list.len();
+            let nodes = body.mesh().nodes();
+            let bits = nodes.map(|(id, _)| {
+                let (at, velocity, _) = body.node_state(id);
+                [at.x, at.y, velocity.x, velocity.y].map(f32::to_bits)
+            });
+            bits.collect::<Vec<_>>()
+        });
+        assert!(states[0] == states[1], "tick {tick}");
+    }
+    assert!(split > 1, "nothing tore, so fracture was not compared");
+}
+
+#[test]
+fn scene_names_tints_and_keeps_them() {
+    let bytes = coloured_figure().png();
+    let scene = torn_scene("material = 2\nkeep_colours = true", &bytes);
+    let (_, tints) = import_tinted(&bytes, 40);
+    let colours = scene.colours();
+    assert_eq!(colours[..2], [None, None]);
+    let found: Vec<[u8; 3]> = colours[2..].iter().flatten().copied().collect();
+    assert_eq!(found, tints);
+    // Each tint has the values of material 2.
+    let made = scene.materials();
+    assert!(made[2..].iter().all(|material| *material == made[1]));
+    let body = &scene.body[0];
+    assert_eq!((body.keep_colours, body.material), (None, None));
+    assert_eq!(body.colours.len(), tints.len());
+
+    // In the world there is only material 2; the tints are those of the picture.
+    let world = scene.build::<Dim2>().unwrap();
+    let (_, built) = world.soft_bodies().next().unwrap();
+    let solid = materials(built.grid());
+    assert!(solid.iter().all(|&number| number == 0 || number == 2));
+    let (grid, _) = import_tinted(&bytes, 40);
+    let shifted = materials(&grid)
+        .into_iter()
+        .map(|k| if k > 0 { k + 2 } else { 0 });
+    let tinted = scene.tint_grids::<Dim2>().unwrap();
+    let tinted = tinted[0].as_ref().unwrap();
+    assert_eq!(materials(tinted), shifted.collect::<Vec<_>>());
+
+    let text = scene.text().unwrap();
+    let again = Scene::read("toy.toml", &text, &[]).unwrap();
+    assert!(again == scene && again.build::<Dim2>().unwrap().hash() == world.hash());
+
+    // Without the key, nothing about colours is written.
+    let plain = torn_scene("", &bytes);
+    assert!(!plain.text().unwrap().contains("colour ="));
+    assert!(!plain.text().unwrap().contains("keep_colours"));
+    assert_eq!(plain.tint_grids::<Dim2>().unwrap(), [None]);
+}
+
+#[test]
+fn only_materials_with_colour_are_tints() {
+    let numbers = |second: &str| {
+        let text = format!(
+            "dim = 2\n[[material]]\n[[material]]\n{second}\n[[body]]\nvoxels = {{ size = [4, 1, 1], voxel_size = 0.1, \
+             runs = \"2x1 2x2\" }}\n"
+        );
+        let scene = Scene::read("toy.toml", &text, &[]).unwrap();
+        let world = scene.build::<Dim2>().unwrap();
+        let (_, body) = world.soft_bodies().next().unwrap();
+        materials(body.grid())
+    };
+    // Files without colours keep their bits, so equal materials stay apart.
+    assert_eq!(numbers(""), [1, 1, 2, 2]);
+    assert_eq!(numbers("colour = [1, 2, 3]"), [1, 1, 1, 1]);
+    assert_eq!(numbers("colour = [1, 2, 3]\nyoung = 9000.0"), [1, 1, 2, 2]);
+}
+
+#[test]
+fn wrong_colours_are_named() {
+    let read = |text: &str| Scene::read("toy.toml", text, &[]).unwrap_err().to_string();
+    let wrong = read("dim = 2\n[[material]]\ncolour = [256, 0, 0]\n");
+    assert!(
+        wrong.starts_with("toy.toml, line 3") && wrong.contains("256"),
+        "{wrong}"
+    );
+    let refused = |fields: &str| {
+        let text = format!("dim = 2\n[[body]]\nfile = \"a.png\"\n{fields}\n");
+        let mut scene = Scene::read("toy.toml", &text, &[]).unwrap();
+        let embedded = scene.embed_files(&|_| Ok(coloured_figure().png()));
+        embedded
+            .and_then(|()| scene.build::<Dim2>().map(|_| ()))
+            .unwrap_err()
+            .to_string()
+    };
+    let both = refused("keep_colours = true\nplain = true");
+    assert!(
+        both.contains("body 1, keep_colours: not allowed together with plain"),
+        "{both}"
+    );
+    let both = refused("keep_colours = true\ncolours = { \"#ff0000\" = 1 }");
+    assert!(
+        both.contains("keep_colours: not allowed together with plain, nor"),
+        "{both}"
+    );
+    let missing = refused("keep_colours = true\nmaterial = 7");
+    assert!(
+        missing.contains("material: expected 1 to 1, found 7"),
+        "{missing}"
+    );
+    let text = "dim = 2\n[[body]]\nshape = \"ball\"\nn = 8\nkeep_colours = true\n";
+    let scene = Scene::read("toy.toml", text, &[]).unwrap();
+    let wrong = scene.build::<Dim2>().unwrap_err().to_string();
+    assert!(
+        wrong.contains("keep_colours: only for a picture"),
+        "{wrong}"
+    );
+}

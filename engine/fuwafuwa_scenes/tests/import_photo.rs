@@ -204,3 +204,25 @@ fn decode_survives_damaged_pictures() {
         }
     }
 }
+
+#[test]
+fn decode_refuses_jpeg_without_its_end() {
+    let jpeg = encoded(ImageFormat::Jpeg);
+    // What follows the end marker does not matter, and a thumbnail in EXIF data has an end marker of its own.
+    let thumbnail = b"\xff\xe1\0\x06\xff\xd9\xff\xd9";
+    let with_thumbnail = [&jpeg[..2], thumbnail, &jpeg[2..]].concat();
+    for good in [&[&jpeg[..], b"more"].concat(), &with_thumbnail] {
+        assert_eq!(rows(good, 6), UPRIGHT);
+    }
+    for length in [20, 40, jpeg.len() / 2, jpeg.len() - 40, jpeg.len() - 1] {
+        for whole in [&jpeg, &with_thumbnail] {
+            let error = Picture::decode("cut.jpg", &whole[..length]).unwrap_err();
+            assert_eq!(
+                error.to_string(),
+                format!(
+                    "cut.jpg, byte {length}: expected the rest of the JPEG picture up to its end marker, found the end of the file"
+                )
+            );
+        }
+    }
+}

@@ -61,7 +61,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "young",
             "yuong",
-            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `density`, `damping`, `friction`, `strength`, `toughness`, `yield_strain`, `plastic_limit`, `unbreakable`",
+            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `density`, `damping`, `friction`, `strength`, `toughness`, `yield_strain`, `plastic_limit`, `unbreakable`, `colour`",
         ),
         (
             "\"ball\"",
@@ -377,12 +377,28 @@ fn build_limits_number_of_bodies_and_sum_of_voxels() {
         complaint(&many),
         "toy.toml, line 5: body: expected 1024 bodies at most, found 1025"
     );
-    let two = GOOD.to_string() + "[[body]]\nshape = \"heart\"\nn = 12\n";
+    let body = |text: &str| GOOD.to_string() + "[[body]]\n" + text;
+    let two = body("shape = \"box\"\nn = 12\n");
     let scene = Scene::read("toy.toml", &two, &[]).unwrap();
-    assert!(scene.build_within::<Dim2>(288).is_ok());
+    let world = scene.build::<Dim2>().unwrap();
+    let bodies = world.soft_bodies();
+    let solid: usize = bodies.map(|(_, body)| body.grid().solid_count()).sum();
+    let less = solid - 1;
+    assert!(scene.build_within::<Dim2>(solid).is_ok());
     assert_eq!(
-        scene.build_within::<Dim2>(287).unwrap_err().to_string(),
-        "toy.toml, line 18: body 2, n: expected 287 voxels at most in the grids of all bodies together, found 288"
+        scene.build_within::<Dim2>(less).unwrap_err().to_string(),
+        format!(
+            "toy.toml, line 18: body 2, n: expected {less} solid voxels at most in all bodies together, found {solid}"
+        )
+    );
+    // A large grid that is almost empty is limited by its memory.
+    let dots = body("voxels = { size = [100, 100, 1], voxel_size = 0.1, runs = \"1x1 9999x0\" }\n");
+    let scene = Scene::read("toy.toml", &dots, &[]).unwrap();
+    assert!(scene.build_within::<Dim2>(1300).is_ok());
+    let error = scene.build_within::<Dim2>(1200).unwrap_err().to_string();
+    assert!(
+        error.contains("expected 9600 voxels at most, solid or empty, in the grids"),
+        "{error}"
     );
 }
 
@@ -437,7 +453,7 @@ fn build_rejects_too_large_grid_before_allocation() {
     };
     let large = dim3("dim = 3\n[[body]]\nshape = \"flower\"\nn = 400\n");
     assert!(
-        large.contains("n: expected 32768 voxels at most"),
+        large.contains("n: expected 262144 voxels at most, solid or empty"),
         "{large}"
     );
 }

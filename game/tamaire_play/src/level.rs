@@ -6,7 +6,7 @@ mod room;
 use crate::Route;
 use frame::BodySize;
 use fuwafuwa::inspect::Hash;
-use fuwafuwa::{Dim, Dim2, Dim3, Shape, Vec3, World};
+use fuwafuwa::{Dim, Dim2, Dim3, Shape, Vec3, VoxelGrid, World};
 use fuwafuwa_scenes::import::FileType;
 use fuwafuwa_scenes::scene::{
     BodyText, Fetch, GameText, MAX_TEXT_BYTES, MotionTypeText, RigidBodyText, Scene, SceneError,
@@ -22,13 +22,14 @@ pub struct Level {
     pub id: String,
     scene: Scene,
     game: GameText,
+    colours: Vec<Option<[u8; 3]>>,
     /// The [`Start`] in the level's dimension. The world is built at first use and then copied, because
     /// copying is far faster than building.
     start: Arc<OnceLock<Box<dyn Any + Send + Sync>>>,
 }
 
-/// World at the start, and basket.
-type Start<D> = (World<D>, Option<Shape<D>>);
+/// World at the start, basket, and the tints of each body.
+type Start<D> = (World<D>, Option<Shape<D>>, Vec<Option<VoxelGrid<D>>>);
 
 impl PartialEq for Level {
     fn eq(&self, other: &Self) -> bool {
@@ -84,12 +85,12 @@ pub enum LevelError {
     },
 }
 
-/// Maximum number of voxels, solid or empty, in the grids of all bodies of a level. For example, eight
-/// squares 64 voxels wide, or a ball 32 voxels wide. Even if all these voxels are split apart, the world is
-/// built within seconds, runs slowly but runs, and fits into one GPU buffer.
+/// Maximum number of solid voxels in all bodies of a level. For example, eight squares 64 voxels wide, or a cube
+/// 32 voxels wide. Even if all these voxels are split apart, the world is built within seconds, runs slowly but
+/// runs, and fits into one GPU buffer.
 pub const MAX_VOXELS: usize = 1 << 15;
-/// Maximum number of voxels in 3D if all bodies start whole and with large elements inside. For example, a
-/// ball 64 voxels wide. This is eight times [`MAX_VOXELS`] but gives only five times as many elements.
+/// Maximum number of solid voxels in 3D if all bodies start whole and with large elements inside. For example, a
+/// cube 64 voxels wide. This is eight times [`MAX_VOXELS`] but gives only five times as many elements.
 pub const MAX_WHOLE_VOXELS: usize = 1 << 18;
 
 /// Maximum size of a stored level with its embedded files [bytes].
@@ -210,7 +211,9 @@ impl Level {
         let name = file_name(id);
         if let Some(body) = level.scene.body.first_mut() {
             (body.shape, body.file) = (None, Some(name.into()));
-            if level.scene.dim == 3 {
+            if level.scene.dim == 2 {
+                body.keep_colours = Some(true);
+            } else {
                 // Takes the resolution from the model, and gives all colours of the model the soft material.
                 let all = (1..=u8::MAX).map(|index| (index.to_string(), 1));
                 (body.n, body.colours) = (None, all.collect());
@@ -281,6 +284,7 @@ impl Level {
         let (id, start) = (id.into(), Arc::default());
         let level = Self {
             id,
+            colours: scene.colours(),
             scene,
             game,
             start,
@@ -306,6 +310,27 @@ impl Level {
     /// Returns the table `[game]`.
     pub fn game(&self) -> &GameText {
         &self.game
+    }
+
+    /// Returns the colour of each material, number 1 first; `None` takes that of the palette. See
+    /// [`Scene::colours`].
+    pub fn colours(&self) -> &[Option<[u8; 3]>] {
+        &self.colours
+    }
+
+    /// Returns the voxels of each body by the material numbers that decide their colours, for renderers; see
+    /// [`Scene::tint_grids`]. Empty if the level has another dimension.
+    pub fn tint_grids<D: Dim>(&self) -> &[Option<VoxelGrid<D>>] {
+        let is_of_dim = usize::from(self.scene.dim) == D::N;
+        let start = is_of_dim.then(|| self.start::<D>()).and_then(Result::ok);
+        start.map_or(&[], |start| start.2.as_slice())
+    }
+
+    /// Returns whether a body was made from a picture that is not part of the game.
+    pub fn is_drawing(&self, body: usize) -> bool {
+        let is_file = |body: &BodyText| body.file.is_some();
+        let is_built_in = NAMED.iter().any(|(id, _)| *id == self.id);
+        self.scene.dim == 2 && !is_built_in && self.scene.body.get(body).is_some_and(is_file)
     }
 
     /// Returns the routes by which the level can be won. A level without a basket has none, and a level in
@@ -339,21 +364,22 @@ impl Level {
     }
 
     /// Returns a copy of the world at the start, and the basket.
-    pub(crate) fn build<D: Dim>(&self) -> Start<D> {
+    pub(crate) fn build<D: Dim>(&self) -> (World<D>, Option<Shape<D>>) {
         let start = self.start::<D>();
-        start
-            .expect("tests build built-in levels, from_scene other levels")
-            .clone()
+        let (world, basket, _) =
+            start.expect("tests build built-in levels, from_scene other levels");
+        (world.clone(), *basket)
     }
 
-    /// Returns the world at the start and the basket. The world is built at the first call.
+    /// Returns the world at the start, the basket, and the tints. The world is built at the first call.
     fn start<D: Dim>(&self) -> Result<&Start<D>, SceneError> {
         let known = match self.start.get() {
             Some(known) => known,
             None => {
                 let start: Start<D> = (
-                    self.scene.build_within(most_voxels::<D>(&self.scene))?,
+                    self.scene.build_within(most_solid::<D>(&self.scene))?,
                     self.scene.basket::<D>()?,
+                    self.scene.tint_grids::<D>()?,
                 );
                 self.start.get_or_init(|| Box::new(start))
             }
@@ -448,7 +474,7 @@ fn attribute_to_file(file: &str, error: LevelError) -> LevelError {
     }
 }
 
-fn most_voxels<D: Dim>(scene: &Scene) -> usize {
+fn most_solid<D: Dim>(scene: &Scene) -> usize {
     let is_fine = |body: &BodyText| body.crumbled || body.diced.is_some() || body.uniform;
     match D::N == 3 && !scene.body.iter().any(is_fine) {
         true => MAX_WHOLE_VOXELS,
@@ -554,21 +580,22 @@ mod tests {
     #[test]
     fn level_with_too_many_voxels_is_rejected() {
         let [(id, flat), (id_3d, solid)] = [NAMED[0], NAMED_3D[0]];
-        let few = "body 1, n: expected 32768 voxels at most";
-        let many = "body 1, n: expected 262144 voxels at most";
+        // The bodies are balls, of π/4 n² or π/6 n³ solid voxels.
+        let few = "body 1, n: expected 32768 solid voxels at most";
+        let many = "body 1, n: expected 262144 solid voxels at most";
         for (id, text, changes, expected) in [
-            (id, flat, &["body.n=181"][..], None),
-            (id, flat, &["body.n=182"], Some(few)),
-            (id_3d, solid, &["body.n=64"], None),
-            (id_3d, solid, &["body.n=65"], Some(many)),
+            (id, flat, &["body.n=203"][..], None),
+            (id, flat, &["body.n=206"], Some(few)),
+            (id_3d, solid, &["body.n=79"], None),
+            (id_3d, solid, &["body.n=81"], Some(many)),
             (
                 id_3d,
                 solid,
-                &["body.n=33", "body.crumbled=true"],
+                &["body.n=41", "body.crumbled=true"],
                 Some(few),
             ),
-            (id_3d, solid, &["body.n=33", "body.diced=0.1"], Some(few)),
-            (id_3d, solid, &["body.n=33", "body.uniform=true"], Some(few)),
+            (id_3d, solid, &["body.n=41", "body.diced=0.1"], Some(few)),
+            (id_3d, solid, &["body.n=41", "body.uniform=true"], Some(few)),
         ] {
             let found = refusal(id, text, changes);
             let is_as_expected = match expected {

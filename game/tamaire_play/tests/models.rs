@@ -90,9 +90,19 @@ fn model_of_any_colours_becomes_the_body_of_a_level() {
         let error = Level::read("wide.VOX", bytes, &nothing).unwrap_err();
         error.to_string()
     };
-    let corners = [[0, 0, 0, 79], [64, 63, 63, 79]];
-    let wide = refused(&model([65, 64, 64], &corners, &[[0; 4]; 256]));
-    assert!(wide.contains("expected 262144 voxels at most"), "{wide}");
+    // Empty voxels of a canvas do not count, but solid ones do.
+    let all =
+        (0..65 * 64 * 64).map(|k| [k % 65, k / 65 % 64, k / 65 / 64, 79].map(|k: u32| k as u8));
+    let wide = refused(&model(
+        [65, 64, 64],
+        &all.collect::<Vec<_>>(),
+        &[[0; 4]; 256],
+    ));
+    let expected = "expected 262144 solid voxels at most in all bodies together, found 266240";
+    assert!(wide.contains(expected), "{wide}");
+    let hollow = [[0, 0, 0, 79], [99, 99, 99, 79]];
+    let hollow = model([100; 3], &hollow, &[[0; 4]; 256]);
+    assert!(Level::read("hollow.vox", &hollow, &nothing).is_ok());
     let torn = refused(&pudding()[..1000]);
     for (said, place) in [(&wide, ": "), (&torn, ", byte 20: expected ")] {
         let begin = format!("cannot make a body from wide.VOX{place}");

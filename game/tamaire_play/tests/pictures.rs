@@ -1,8 +1,9 @@
 //! Levels made from pictures.
 
 use fuwafuwa::Dim2;
+use std::sync::Arc;
 use tamaire_play::level::NAMED;
-use tamaire_play::{Level, Replay};
+use tamaire_play::{AnyRound, Level, Replay};
 
 /// Returns a picture of black shapes on white paper, as a PNG file.
 fn drawing([width, height]: [u32; 2], is_black: impl Fn(f32, f32) -> bool) -> Vec<u8> {
@@ -115,4 +116,49 @@ fn picture_of_built_in_level_is_embedded_whole() {
     // are as they were before pictures had the field `plain`.
     assert!(content == include_bytes!("../levels/cat.png"));
     assert_eq!((body.plain, body.fill), (None, None));
+}
+
+/// Returns a disc of red crayon with a black outline on white paper, as a PNG file.
+fn coloured_drawing() -> Vec<u8> {
+    let mut pixels = Vec::new();
+    for at in 0..300 * 300 {
+        let (x, y) = ((at % 300) as f32 - 150.0, (at / 300) as f32 - 150.0);
+        pixels.extend(match x.hypot(y) {
+            0.0..100.0 => [220u8, 40, 50],
+            100.0..110.0 => [0; 3],
+            _ => [255; 3],
+        });
+    }
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 300, 300);
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&pixels).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
+#[test]
+fn drawn_body_keeps_colours_in_stored_level_and_replay() {
+    let level = read("a.png", &coloured_drawing());
+    let kept = Level::read_kept("a.png", level.text_to_keep().unwrap().as_bytes()).unwrap();
+    let replay = AnyRound::new(Arc::new(level.clone())).replay();
+    let replay = Replay::read(&replay.text()).unwrap();
+    let replayed = replay.level().unwrap();
+    for level in [&level, &kept, &replayed] {
+        // Material 1 of Classic, then red and black.
+        let [None, Some(red), Some(black)] = *level.colours() else {
+            panic!("{:?}", level.colours());
+        };
+        assert!(red[0] > 200 && red[1] < 100 && red[2] < 100, "{red:?}");
+        assert!(black.into_iter().all(|channel| channel < 60), "{black:?}");
+        let grid = level.tint_grids::<Dim2>()[0].as_ref().unwrap();
+        let [columns, rows, _] = grid.size();
+        assert_eq!(grid.material([columns / 2, rows / 2, 0]), 2);
+        assert_eq!(grid.material([1, rows / 2, 0]), 3);
+        assert!(level.is_drawing(0) && !level.is_drawing(1));
+    }
+    assert_eq!(kept.hash(), level.hash());
+    let cat = Level::open("cat").unwrap();
+    assert!(!cat.is_drawing(0) && cat.tint_grids::<Dim2>()[0].is_none());
 }

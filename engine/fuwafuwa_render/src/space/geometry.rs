@@ -9,7 +9,7 @@ use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
 use crate::palette::Palette;
 use crate::rigid::{MAX_WALLS, hands, obstacles};
-use fuwafuwa::{Dim3, ElementId, MotionType, Shape, SoftBody, World};
+use fuwafuwa::{Dim3, ElementId, MotionType, Shape, SoftBody, VoxelGrid, World};
 use glam::{Mat3, Vec3};
 use std::ops::Range;
 
@@ -57,6 +57,7 @@ impl Geometry {
         self.boxes.clear();
         self.stickers.clear();
         let palette = frame.palette;
+        let colours = frame.colours();
         let bars = obstacles(world);
         let bars = bars.filter_map(|bar| RoundedInstance::of(bar.shape(), palette.bar, 0.0));
         self.bars = append(&mut self.rounded, bars);
@@ -69,7 +70,9 @@ impl Geometry {
         self.ghosts.resize_with(ghosts, Skin::default);
         if let Some(ghost) = frame.ghost {
             let skins = self.ghosts.iter_mut().zip(ghost.soft_bodies());
-            let renewed = skins.map(|(skin, (_, body))| skin.update(body, &palette.materials));
+            let renewed = skins.enumerate().map(|(place, (skin, (_, body)))| {
+                skin.update_tinted(body, frame.numbers(place, body), &colours)
+            });
             self.renewed_ghosts.extend(renewed);
         }
         let of_ghost = frame
@@ -85,9 +88,11 @@ impl Geometry {
             match frame.look {
                 Look::Skin => {
                     let skin = &mut self.skins[place];
-                    self.renewed.push(skin.update(body, &palette.materials));
+                    let numbers = frame.numbers(place, body);
+                    self.renewed
+                        .push(skin.update_tinted(body, numbers, &colours));
                     let crumbs = skin.crumbs().iter();
-                    let crumbs = crumbs.filter_map(|&id| crumb(body, id, frame));
+                    let crumbs = crumbs.filter_map(|&id| crumb(body, id, numbers, frame));
                     append(&mut self.rounded, crumbs);
                 }
                 Look::Elements { colour, ages, .. } => {
@@ -184,6 +189,7 @@ fn ball(centre: Vec3, radius: f32, number: f32) -> RoundedInstance {
 fn crumb(
     body: &SoftBody<Dim3>,
     id: ElementId,
+    numbers: &VoxelGrid<Dim3>,
     frame: &Frame<'_, Camera>,
 ) -> Option<RoundedInstance> {
     let element = body.mesh().element(id)?;
@@ -191,8 +197,7 @@ fn crumb(
     let sum = |side: [usize; 4]| side.map(place).iter().sum::<Vec3>();
     let (low, high) = (sum([0, 1, 2, 3]), sum([4, 5, 6, 7]));
     let along = |low: [usize; 4], high: [usize; 4]| 0.25 * (sum(high) - sum(low));
-    let material = body.grid().material(element.cell.at);
-    let [red, green, blue] = frame.palette.material(material);
+    let [red, green, blue] = frame.colour(numbers.material(element.cell.at));
     Some(RoundedInstance {
         centre: 0.125 * (low + high),
         radius: CRUMB,

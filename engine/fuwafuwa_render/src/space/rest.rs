@@ -48,7 +48,9 @@ pub struct Rest {
     points: Vec<RestPoint>,
     /// Grid that the offsets belong to.
     grid: Option<VoxelGrid<Dim3>>,
-    /// Highest material number in the grid.
+    /// Voxels by the material numbers that decide the colours, if these are not those of the grid.
+    numbers: Option<VoxelGrid<Dim3>>,
+    /// Highest material number that decides a colour.
     materials: u8,
 }
 
@@ -101,14 +103,15 @@ impl TopMaterials {
 const NONE: u32 = u32::MAX;
 
 impl Rest {
-    /// Computes the offsets of a grid.
-    pub fn new(grid: &VoxelGrid<Dim3>) -> Self {
+    /// Computes the offsets of a grid. `numbers` has the material numbers that decide the colours.
+    pub fn new(grid: &VoxelGrid<Dim3>, numbers: &VoxelGrid<Dim3>) -> Self {
         let sharing = Connectivity::new(grid);
-        let materials = grid.voxels().map(|voxel| grid.material(voxel));
+        let materials = numbers.voxels().map(|voxel| numbers.material(voxel));
         let mut rest = Self {
             first: vec![NONE; sharing.point_count()],
             points: Vec::new(),
             grid: Some(grid.clone()),
+            numbers: (numbers != grid).then(|| numbers.clone()),
             materials: materials.max().unwrap_or(0),
         };
         for at in sharing.points() {
@@ -132,13 +135,17 @@ impl Rest {
         for (point, (&to, &from)) in rest.points.iter_mut().zip(smooth.iter().zip(&places)) {
             point.offset = (to - from).clamp_length_max(farthest(grid, point.at));
         }
-        rest.find_tints(grid, &neighbours);
+        rest.find_tints(numbers, &neighbours);
         rest
     }
 
-    /// Returns whether these offsets were computed for this grid.
-    pub fn fits(&self, grid: &VoxelGrid<Dim3>) -> bool {
-        self.grid.as_ref() == Some(grid)
+    /// Returns whether these offsets were computed for this grid and these numbers.
+    pub fn fits(&self, grid: &VoxelGrid<Dim3>, numbers: &VoxelGrid<Dim3>) -> bool {
+        self.grid.as_ref() == Some(grid) && self.numbers() == Some(numbers)
+    }
+
+    fn numbers(&self) -> Option<&VoxelGrid<Dim3>> {
+        self.numbers.as_ref().or(self.grid.as_ref())
     }
 
     /// Returns the offset of a point [voxels] as seen from the voxel in one of its octants: the smoothing
@@ -165,7 +172,7 @@ impl Rest {
     fn tint_inside(&self, at: Point) -> Tint {
         let mut most = TopMaterials::default();
         let mut shares = [0.0; 256];
-        if let Some(grid) = self.grid.as_ref().filter(|_| self.materials > 1) {
+        if let Some(grid) = self.numbers().filter(|_| self.materials > 1) {
             for voxel in points_in(at.map(|k| k - 2), at.map(|k| k + 1)) {
                 let weights = [0, 1, 2].map(|k| AROUND_INSIDE[(voxel[k] - at[k] + 2) as usize]);
                 shares[usize::from(grid.material(voxel))] += weights.iter().product::<f32>();
@@ -310,7 +317,7 @@ mod tests {
     fn offsets_make_a_ball_round() {
         for n in [12, 32] {
             let grid = VoxelGrid::<Dim3>::ball(n, 1.0).unwrap();
-            let rest = Rest::new(&grid);
+            let rest = Rest::new(&grid, &grid);
             let half = 0.5 * n as f32;
             let round = (grid.solid_count() as f32 * 0.75 / std::f32::consts::PI).cbrt();
             for point in &rest.points {
@@ -327,7 +334,7 @@ mod tests {
     /// Returns all surface points with their position across the border of two materials: 0 = first, 1 =
     /// second.
     fn sides(grid: &VoxelGrid<Dim3>) -> Vec<(Point, f32)> {
-        let rest = Rest::new(grid);
+        let rest = Rest::new(grid, grid);
         let side = |point: &RestPoint| match point.tint.materials {
             [1, 1] => 0.0,
             [2, 2] => 1.0,
@@ -376,7 +383,7 @@ mod tests {
                 .map(|found| found.1)
         };
         assert!(side([5, 5, 10]) > Some(0.5) && side([3, 5, 10]) < Some(0.5));
-        let rest = Rest::new(&grid);
+        let rest = Rest::new(&grid, &grid);
         assert_eq!(rest.tint([5, 5, 5], 0).materials, [1, 1]);
         assert_eq!(
             rest.tint([5, 5, 9], 0).materials,
@@ -389,7 +396,7 @@ mod tests {
     fn points_separate_voxels_that_touch_along_an_edge() {
         let grid =
             VoxelGrid::<Dim3>::from_fn([2, 2, 1], 1.0, |[x, y, _]| u8::from(x == y)).unwrap();
-        let rest = Rest::new(&grid);
+        let rest = Rest::new(&grid, &grid);
         assert_eq!(rest.points.len(), 16);
         assert_ne!(rest.find([1, 1, 1], 0), rest.find([1, 1, 1], 3));
         assert_eq!(rest.find([1, 1, 1], 1), None);

@@ -9,7 +9,7 @@ use super::rest::Rest;
 use crate::palette::Colour;
 use bytemuck::{Pod, Zeroable};
 use fuwafuwa::inspect::Row;
-use fuwafuwa::{Dim3, ElementId, IndexVec, NodeId, PieceId, SoftBody};
+use fuwafuwa::{Dim3, ElementId, IndexVec, NodeId, PieceId, SoftBody, VoxelGrid};
 use glam::{Vec3, Vec4};
 
 /// Fraction of the way that a point moves to the mean of its neighbours in each round: on the original
@@ -55,9 +55,20 @@ impl Skin {
     /// Updates the surface to the current state of a body. `palette` has the colours of its materials,
     /// starting at number 1. Returns whether the triangles changed.
     pub fn update(&mut self, body: &SoftBody<Dim3>, palette: &[Colour]) -> bool {
-        if !self.rest.fits(body.grid()) {
+        self.update_tinted(body, body.grid(), palette)
+    }
+
+    /// Updates the surface like [`Skin::update`], but colours each voxel by its material number in `numbers`, a
+    /// grid of the same size as that of the body.
+    pub fn update_tinted(
+        &mut self,
+        body: &SoftBody<Dim3>,
+        numbers: &VoxelGrid<Dim3>,
+        palette: &[Colour],
+    ) -> bool {
+        if !self.rest.fits(body.grid(), numbers) {
             *self = Self {
-                rest: Rest::new(body.grid()),
+                rest: Rest::new(body.grid(), numbers),
                 ..Self::default()
             };
         }

@@ -2,6 +2,8 @@
 
 use super::mask::{Component, Extent, Mask, longer};
 use super::note::NoteKind;
+use super::paper::Drawing;
+use super::tints::{INK_WEIGHT, Sample, Samples};
 
 /// Maximum number of pixels per voxel at which shapes are worked on.
 const DETAIL: usize = 8;
@@ -28,22 +30,81 @@ const LEAST_DRAWING: f64 = 0.02;
 pub(super) struct Solid {
     /// Solid pixels, trimmed. The mask has no pixel if the drawing has none.
     pub mask: Mask,
+    /// Ink and what it encloses, before strokes were thickened; of the size of `mask`.
+    filled: Mask,
+    /// Number of pixels of the picture along a pixel of `mask`.
+    factor: usize,
+    /// Pixel of the picture at the upper left corner of `mask`, which may lie outside the picture.
+    corner: [isize; 2],
     /// Notes on what was left out.
     pub notes: Vec<NoteKind>,
+}
+
+impl Solid {
+    /// Returns the colours of the solid pixels. A pixel with ink has the mean colour of its ink. What was
+    /// thickened has no colour of its own.
+    pub fn samples(&self, drawing: &Drawing) -> Samples {
+        let [width, _] = self.mask.size;
+        let pixels = self.filled.on.iter().enumerate().map(|(at, &is_filled)| {
+            let sample = || self.sample(drawing, [at % width, at / width]);
+            is_filled.then(sample).flatten()
+        });
+        Samples {
+            size: self.mask.size,
+            pixels: pixels.collect(),
+        }
+    }
+
+    fn sample(&self, drawing: &Drawing, pixel: [usize; 2]) -> Option<Sample> {
+        let size = drawing.ink.size;
+        let [columns, rows] = [0, 1].map(|axis| {
+            let start = self.corner[axis] + (pixel[axis] * self.factor) as isize;
+            let within = |at: isize| at.clamp(0, size[axis] as isize) as usize;
+            within(start)..within(start + self.factor as isize)
+        });
+        let block = || {
+            let row = |row: usize| columns.clone().map(move |column| row * size[0] + column);
+            rows.clone().flat_map(row)
+        };
+        let mean = |pixels: &mut dyn Iterator<Item = usize>| {
+            let (mut sums, mut count) = ([0u32; 3], 0u32);
+            for at in pixels {
+                (0..3).for_each(|k| sums[k] += u32::from(drawing.colours[at][k]));
+                count += 1;
+            }
+            (count > 0).then(|| sums.map(|sum| (sum / count) as u8))
+        };
+        let of = |colour, weight| Sample { colour, weight };
+        let ink = mean(&mut block().filter(|&at| drawing.ink.on[at]));
+        let ink = ink.map(|colour| of(colour, INK_WEIGHT));
+        ink.or_else(|| mean(&mut block()).map(|colour| of(colour, 1)))
+    }
 }
 
 /// Returns the solid part of a drawing with at most `across` voxels on its longer side. Closed outlines are
 /// filled if `fill` is set.
 pub(super) fn solid(ink: &Mask, across: usize, fill: bool) -> Solid {
     let (ink, surroundings) = without_surroundings(ink);
-    let (ink, specks) = without_specks(&ink, across);
-    let ink = ink.reduced((ink.longer() / (DETAIL * across)).max(1));
+    let (kept, specks) = without_specks(&ink, across);
+    let extent = kept.extent();
+    let ink = kept.part(&extent);
+    let factor = (ink.longer() / (DETAIL * across)).max(1);
+    let ink = ink.reduced(factor);
     let surroundings = (surroundings > 0).then_some(NoteKind::Surroundings {
         left_out: surroundings,
     });
     let specks = (specks > 0).then_some(NoteKind::Specks { left_out: specks });
+    let held = held(ink, across, fill);
+    let trimmed = held.solid.extent();
+    let corner = [0, 1].map(|axis| {
+        let pixels = trimmed[axis].start as isize - held.margin as isize;
+        extent[axis].start as isize + pixels * factor as isize
+    });
     Solid {
-        mask: held(ink, across, fill).trimmed(),
+        mask: held.solid.part(&trimmed),
+        filled: held.filled.part(&trimmed),
+        factor,
+        corner,
         notes: surroundings.into_iter().chain(specks).collect(),
     }
 }
@@ -81,7 +142,7 @@ fn without_surroundings(ink: &Mask) -> (Mask, usize) {
     (drawing, around)
 }
 
-/// Removes specks, and trims what remains. Returns the number of specks.
+/// Removes specks. Returns the number of specks.
 fn without_specks(ink: &Mask, across: usize) -> (Mask, usize) {
     let components = ink.components();
     let largest = components.list.iter().map(|component| component.area).max();
@@ -105,26 +166,40 @@ fn without_specks(ink: &Mask, across: usize) -> (Mask, usize) {
         .iter()
         .filter(|component| !is_kept(component))
         .count();
-    (components.kept(ink.size, is_kept).trimmed(), specks)
+    (components.kept(ink.size, is_kept), specks)
+}
+
+/// Ink that was filled, and then thickened.
+struct Held {
+    solid: Mask,
+    filled: Mask,
+    /// Margin around the ink [pixels].
+    margin: usize,
 }
 
 /// Returns ink with closed outlines filled and thin strokes thickened, so that voxels of which at least half is
 /// solid hold together.
-fn held(ink: Mask, across: usize, fill: bool) -> Mask {
+fn held(ink: Mask, across: usize, fill: bool) -> Held {
     let voxel = ink.longer() as f64 / across as f64;
-    let ink = ink.padded((2.0 * voxel) as usize + 1);
+    let margin = (2.0 * voxel) as usize + 1;
+    let ink = ink.padded(margin);
     // Each pixel becomes a voxel, so no stroke is too thin, but voxels hold together only along edges.
     let keeps_pixels = voxel <= 1.0;
-    let solid = match fill {
+    let filled = match fill {
         true => filled(&ink, if keeps_pixels { 0.0 } else { CLOSED * voxel }),
         false => ink,
     };
-    if keeps_pixels {
-        return solid.joined();
-    }
     let thicker =
         |solid: Mask, (thin, by): (f64, f64)| thickened(solid, voxel, thin * voxel, by * voxel);
-    THICKENED.into_iter().fold(solid, thicker)
+    let solid = match keeps_pixels {
+        true => filled.clone().joined(),
+        false => THICKENED.into_iter().fold(filled.clone(), thicker),
+    };
+    Held {
+        solid,
+        filled,
+        margin,
+    }
 }
 
 /// Returns a mask with its strokes grown by a radius `by`, if a disc of radius `thin` does not fit into them

@@ -70,11 +70,6 @@ impl Mask {
         })
     }
 
-    /// Returns the mask without the empty rows and columns around what is on.
-    pub fn trimmed(&self) -> Self {
-        self.part(&self.extent())
-    }
-
     /// Returns the mask with a margin on all sides [pixels].
     pub fn padded(&self, margin: usize) -> Self {
         Self::from_fn(self.size.map(|side| side + 2 * margin), |column, row| {

@@ -21,20 +21,45 @@ const DRAWN: f32 = 0.5;
 /// Minimum darkness of ink, in units of the paper's brightness. It is above the noise of a photo.
 const LEAST_DARK: f32 = 0.15;
 
-/// Returns which pixels of a drawing are ink: clearly darker or more coloured than the paper around them.
-/// Transparent pixels are blended with white paper.
-pub(super) fn ink(size: [usize; 2], pixels: &[[u8; 4]]) -> Mask {
-    let pixels: Vec<[u8; 3]> = pixels.iter().map(|&pixel| on_white(pixel)).collect();
-    let paper = Paper::of(size, &pixels);
-    let [width, _] = size;
-    let darkness: Vec<u8> = pixels
-        .iter()
-        .enumerate()
-        .map(|(at, &pixel)| darkness(pixel, paper.colour(at % width, at / width)))
-        .collect();
-    let limit = limit(&darkness);
-    let on = darkness.iter().map(|&dark| dark > limit).collect();
-    Mask { size, on }
+/// Ink of a drawing, and the colours of all pixels as if the paper were white.
+pub(super) struct Drawing {
+    /// Pixels of ink: clearly darker or more coloured than the paper around them.
+    pub ink: Mask,
+    /// Red, green and blue, row by row from the top.
+    pub colours: Vec<[u8; 3]>,
+}
+
+impl Drawing {
+    /// Finds the ink of a drawing on paper. Transparent pixels are blended with white paper.
+    pub fn on_paper(size: [usize; 2], pixels: &[[u8; 4]]) -> Self {
+        let mut colours: Vec<[u8; 3]> = pixels.iter().map(|&pixel| on_white(pixel)).collect();
+        let paper = Paper::of(size, &colours);
+        let [width, _] = size;
+        let darkness_of = |(at, pixel): (usize, &mut [u8; 3])| {
+            let (column, row) = (at % width, at / width);
+            let darkness = darkness(*pixel, paper.colour(column, row));
+            *pixel = on_white_paper(*pixel, paper.light(column, row));
+            darkness
+        };
+        let darkness: Vec<u8> = colours.iter_mut().enumerate().map(darkness_of).collect();
+        let limit = limit(&darkness);
+        let on = darkness.iter().map(|&dark| dark > limit).collect();
+        Self {
+            ink: Mask { size, on },
+            colours,
+        }
+    }
+
+    /// Returns a drawing with known ink. Transparent pixels are blended with white paper.
+    pub fn without_paper(ink: Mask, pixels: &[[u8; 4]]) -> Self {
+        let colours = pixels.iter().map(|&pixel| on_white(pixel)).collect();
+        Self { ink, colours }
+    }
+}
+
+/// Returns the colour that a pixel would have on white paper in full light.
+fn on_white_paper(pixel: [u8; 3], paper: [f32; 3]) -> [u8; 3] {
+    [0, 1, 2].map(|k| (255.0 * f32::from(pixel[k]) / paper[k].max(1.0)).min(255.0) as u8)
 }
 
 fn on_white([red, green, blue, alpha]: [u8; 4]) -> [u8; 3] {
@@ -82,6 +107,9 @@ struct Paper {
     tiles: [usize; 2],
     /// Red, green and blue in each tile, row by row.
     colours: Vec<[f32; 3]>,
+    /// Red, green and blue of the paper's trend in each tile. Unlike `colours`, it does not follow large areas
+    /// of crayon.
+    trends: Vec<[f32; 3]>,
 }
 
 impl Paper {
@@ -89,6 +117,7 @@ impl Paper {
         let tile = size[0].max(size[1]).div_ceil(TILES).max(LEAST_TILE);
         let tiles = size.map(|side| side.div_ceil(tile));
         let mut colours = vec![[0.0; 3]; tiles[0] * tiles[1]];
+        let mut trends = colours.clone();
         for channel in 0..3 {
             let mut bright = vec![[0usize; 256]; colours.len()];
             for (at, pixel) in pixels.iter().enumerate() {
@@ -103,9 +132,10 @@ impl Paper {
                     .clamp(0.0, 255.0);
                 let is_paper = bright >= LEAST_BRIGHT * trend;
                 colour[channel] = if is_paper { bright } else { trend };
+                trends[at][channel] = trend;
             }
         }
-        for colour in &mut colours {
+        for colour in colours.iter_mut().chain(&mut trends) {
             let [red, green, blue] = *colour;
             if red.max(green).max(blue) < LEAST_PAPER {
                 *colour = [255.0; 3];
@@ -115,14 +145,24 @@ impl Paper {
             tile,
             tiles,
             colours,
+            trends,
         }
     }
 
     /// Returns the colour of the paper at a pixel, interpolated between the centres of the nearest tiles.
     fn colour(&self, column: usize, row: usize) -> [f32; 3] {
+        self.interpolated(&self.colours, column, row)
+    }
+
+    /// Returns the trend of the paper's colour at a pixel: the light that falls on the paper there.
+    fn light(&self, column: usize, row: usize) -> [f32; 3] {
+        self.interpolated(&self.trends, column, row)
+    }
+
+    fn interpolated(&self, tiles: &[[f32; 3]], column: usize, row: usize) -> [f32; 3] {
         let ([left, right], x) = self.near(0, column);
         let ([top, bottom], y) = self.near(1, row);
-        let of = |column: usize, row: usize| self.colours[row * self.tiles[0] + column];
+        let of = |column: usize, row: usize| tiles[row * self.tiles[0] + column];
         let corners = [
             of(left, top),
             of(right, top),

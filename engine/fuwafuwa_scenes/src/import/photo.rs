@@ -35,8 +35,37 @@ pub(super) fn decode(
     format: ImageFormat,
     file_type: FileType,
 ) -> Result<Pixels, PositionedProblem> {
+    if file_type == FileType::Jpeg && !has_end(bytes) {
+        let place = FilePosition::Byte(bytes.len());
+        let expected = "the rest of the JPEG picture up to its end marker";
+        return Err(unexpected(place, expected, "the end of the file"));
+    }
     decode_as(bytes, format)
         .unwrap_or_else(|error| Err(unexpected(FilePosition::File, file_type.to_string(), error)))
+}
+
+/// Returns whether a JPEG file has its end marker. The decoder would make the missing rest of a truncated file
+/// grey.
+fn has_end(bytes: &[u8]) -> bool {
+    const START: u8 = 0xD8;
+    const END: u8 = 0xD9;
+    let mut at = 0;
+    while let Some(&[before, marker]) = bytes.get(at..at + 2) {
+        match (before, marker) {
+            (0xFF, END) => return true,
+            // A segment with its length, which covers the two bytes of the length.
+            (0xFF, 0xC0..=0xFE) if !matches!(marker, 0xD0..=START) => {
+                let Some(&[high, low]) = bytes.get(at + 2..at + 4) else {
+                    return false;
+                };
+                at += 2 + usize::from(u16::from_be_bytes([high, low]));
+            }
+            // A marker without a length, or a byte of compressed data.
+            (0xFF, 0x00 | 0x01 | 0xD0..=START) => at += 2,
+            _ => at += 1,
+        }
+    }
+    false
 }
 
 fn decode_as(bytes: &[u8], format: ImageFormat) -> ImageResult<Result<Pixels, PositionedProblem>> {

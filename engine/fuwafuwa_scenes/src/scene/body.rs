@@ -33,6 +33,10 @@ pub struct MaterialText {
     pub plastic_limit: Option<f32>,
     /// Whether the material never tears: infinite strength and toughness.
     pub unbreakable: bool,
+    /// Colour in pictures: red, green and blue, 0 to 255 (sRGB). By default, the palette of the renderer
+    /// decides by the material number. A material that differs from an earlier one only in its colour is a
+    /// tint: it does not affect the simulation.
+    pub colour: Option<[u8; 3]>,
 }
 
 /// A `[[body]]` table. It requires exactly one of the fields `shape`, `file`, `voxels` and `state`.
@@ -66,6 +70,10 @@ pub struct BodyText {
     /// are not filled and strokes are not thickened; see [`Picture::grid`](crate::import::Picture::grid).
     /// Default false.
     pub plain: Option<bool>,
+    /// Whether a picture without `colours` keeps its own colours as tints, default false; see
+    /// [`Picture::import_tinted`](crate::import::Picture::import_tinted). Each tint becomes a material with the
+    /// values of `material`. Not allowed with `plain`. Removed when the picture is embedded.
+    pub keep_colours: Option<bool>,
     /// Width of the grid [m]; for a file, length of the longest side of its solid part. Default 1.
     pub width: f32,
     /// Number of voxels on each axis in multiples of `n`, e.g. [3.0, 1.0, 1.0]; only for a box or an empty
@@ -244,6 +252,7 @@ impl MaterialText {
             plastic_limit: (material.plastic_limit != Material::default().plastic_limit)
                 .then_some(material.plastic_limit),
             unbreakable,
+            colour: None,
         }
     }
 
@@ -287,6 +296,7 @@ impl Default for BodyText {
             n: None,
             fill: None,
             plain: None,
+            keep_colours: None,
             width: 1.0,
             proportions: [1.0; 3],
             material: None,

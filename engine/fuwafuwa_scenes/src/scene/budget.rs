@@ -1,11 +1,18 @@
 //! Limits on the total work for all bodies of a scene, which may come from an untrusted author.
 
+use super::MAX_VOXELS;
 use super::error::{FieldError, require};
+
+/// Maximum number of voxels, solid or empty, per allowed solid voxel. An empty voxel takes memory, but no time of
+/// the simulation.
+const VOXELS_PER_SOLID: usize = 8;
 
 /// Remaining work for the bodies still to be built. Each step of the construction takes its work from the
 /// budget before it begins.
 pub(super) struct Budget {
-    most_voxels: usize,
+    most_solid: usize,
+    /// Solid voxels in the grids built so far.
+    solid: usize,
     /// Voxels, solid or empty, in the grids built so far.
     voxels: usize,
     /// Remaining distance evaluations: one for each part and voxel of a body.
@@ -19,10 +26,11 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// Creates the budget of a scene with at most `most_voxels` voxels.
-    pub(super) fn of_scene(most_voxels: usize) -> Self {
+    /// Creates the budget of a scene with at most `most_solid` solid voxels.
+    pub(super) fn of_scene(most_solid: usize) -> Self {
         Self {
-            most_voxels,
+            most_solid,
+            solid: 0,
             voxels: 0,
             distances: 1 << 27,
             plane_tests: 1 << 26,
@@ -42,41 +50,44 @@ impl Budget {
         Ok(())
     }
 
-    /// Checks that the voxels of a model are within the limit of the scene.
-    pub(super) fn check_model(&self, size: [i32; 3]) -> Result<(), FieldError> {
-        // On the axes of MagicaVoxel, as its user sees them.
-        let [x, z, y] = size;
-        let count = size
-            .into_iter()
-            .map(|extent| extent as usize)
-            .product::<usize>();
-        let (most, found) = (self.most_voxels, self.voxels.saturating_add(count));
-        let share = most.saturating_sub(self.voxels) as f64 / count as f64;
+    /// Checks that the solid voxels of a model are within the limit of the scene.
+    pub(super) fn check_model(&self, solid: usize) -> Result<(), FieldError> {
+        let share = self.most_solid.saturating_sub(self.solid) as f64 / solid as f64;
         let advice = match (100.0 * share.cbrt()) as usize {
             0 => "remove another body".into(),
             percent => format!(
                 "make the model smaller, to {percent} % of its width, or use a part of it with model = \"name\""
             ),
         };
-        let expected = format!(
-            "expected {most} voxels at most in the grids of all bodies together, found {found}, of which \
-             {x} x {y} x {z} in this model; {advice}"
-        );
-        require(found <= most, "file", expected)
+        let more = format!(", of which {solid} in this model; {advice}");
+        self.check_solid(solid, "file", &more)
     }
 
-    /// Counts `count` more voxels. Returns an error if the scene would then have too many.
-    pub(super) fn take_voxels(&mut self, count: usize) -> Result<(), FieldError> {
+    /// Checks that `solid` more solid voxels are within the limit of the scene. An error of `field` ends with
+    /// `more`.
+    fn check_solid(&self, solid: usize, field: &str, more: &str) -> Result<(), FieldError> {
+        let (most, found) = (self.most_solid, self.solid.saturating_add(solid));
+        let expected = format!(
+            "expected {most} solid voxels at most in all bodies together, found {found}{more}"
+        );
+        require(found <= most, field, expected)
+    }
+
+    /// Counts the voxels of one more grid. Returns an error if the scene would then have too many.
+    pub(super) fn take_voxels(&mut self, count: usize, solid: usize) -> Result<(), FieldError> {
         self.check_voxels(count)?;
+        self.check_solid(solid, "n", "")?;
         self.voxels += count;
+        self.solid += solid;
         Ok(())
     }
 
-    /// Checks that `count` more voxels are within the limit of the scene.
+    /// Checks that `count` more voxels, solid or empty, are within the limit of the scene.
     pub(super) fn check_voxels(&self, count: usize) -> Result<(), FieldError> {
-        let (most, found) = (self.most_voxels, self.voxels.saturating_add(count));
+        let most = MAX_VOXELS.min(VOXELS_PER_SOLID.saturating_mul(self.most_solid));
+        let found = self.voxels.saturating_add(count);
         let expected = format!(
-            "expected {most} voxels at most in the grids of all bodies together, found {found}"
+            "expected {most} voxels at most, solid or empty, in the grids of all bodies together, found {found}"
         );
         require(found <= most, "n", expected)
     }
@@ -119,8 +130,9 @@ mod tests {
     #[test]
     fn budget_limits_sum_over_all_bodies() {
         let mut budget = Budget::of_scene(1000);
-        budget.take_voxels(600).unwrap();
-        assert!(budget.take_voxels(401).is_err() && budget.take_voxels(400).is_ok());
+        budget.take_voxels(7000, 600).unwrap();
+        assert!(budget.take_voxels(401, 401).is_err() && budget.take_voxels(1001, 400).is_err());
+        budget.take_voxels(1000, 400).unwrap();
         budget.take_distances(400, 1 << 18).unwrap();
         assert!(budget.take_distances(113, 1 << 18).is_err());
         assert!(budget.take_distances(112, 1 << 18).is_ok());
@@ -129,16 +141,16 @@ mod tests {
         }
         assert!(budget.take_pixels(1 << 24, 0).is_err());
         assert!(budget.take_distances(0, usize::MAX).is_ok());
-        assert!(budget.take_voxels(usize::MAX).is_err());
+        assert!(budget.take_voxels(usize::MAX, usize::MAX).is_err());
     }
 
     #[test]
     fn model_that_other_bodies_leave_no_room_for_asks_to_remove_one() {
         let mut budget = Budget::of_scene(1000);
-        budget.take_voxels(1000).unwrap();
-        let error = format!("{:?}", budget.check_model([4, 2, 3]).unwrap_err());
+        budget.take_voxels(1000, 1000).unwrap();
+        let error = format!("{:?}", budget.check_model(24).unwrap_err());
         assert!(
-            error.contains("4 x 3 x 2 in this model; remove another body"),
+            error.contains("found 1024, of which 24 in this model; remove another body"),
             "{error}"
         );
     }

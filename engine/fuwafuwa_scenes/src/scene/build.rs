@@ -4,12 +4,13 @@ use super::body::BodyText;
 use super::budget::Budget;
 use super::error::{FieldError, require, vector_of};
 use super::grid;
+use super::materials::SceneMaterials;
 use super::state;
 use fuwafuwa::Grading;
 use fuwafuwa::Law;
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, DimVector, Error, Material, Rotation, SoftBody, Vec2, Vec3, Velocity,
-    VoxelGrid, World,
+    Blade, Dim, Dim2, Dim3, DimVector, Error, Rotation, SoftBody, Vec2, Vec3, Velocity, VoxelGrid,
+    World,
 };
 use std::any::Any;
 
@@ -17,7 +18,7 @@ impl BodyText {
     /// Builds the body, if the budget suffices for its work.
     pub(super) fn build<D: Dim>(
         &self,
-        materials: &[Material],
+        materials: &SceneMaterials,
         budget: &mut Budget,
     ) -> Result<SoftBody<D>, FieldError> {
         let at = vector_of::<D>("at", self.at)?;
@@ -30,10 +31,11 @@ impl BodyText {
                 "expected no other field: state is the whole body",
             )?;
             let body = state::body::<D>(state)?;
-            budget.take_voxels(body.grid().voxels().count())?;
+            let grid = body.grid();
+            budget.take_voxels(grid.voxels().count(), grid.solid_count())?;
             return Ok(body);
         }
-        let grid = grid::of::<D>(self, budget)?;
+        let grid = materials.without_tints(grid::of::<D>(self, budget)?);
         self.check_diced(&grid, budget)?;
         let law = match self.paper_law {
             true => Law::Endo2004,
@@ -43,7 +45,7 @@ impl BodyText {
             true => Grading::Uniform,
             false => Grading::Graded,
         };
-        let body = SoftBody::with_options(grid, materials, law, grading);
+        let body = SoftBody::with_options(grid, &materials.list, law, grading);
         let mut body = body.map_err(|error| match error {
             Error::MissingMaterial { number, given } => {
                 let reason = format!(
@@ -70,7 +72,7 @@ impl BodyText {
     pub(super) fn add_to<D: Dim>(
         &self,
         world: &mut World<D>,
-        materials: &[Material],
+        materials: &SceneMaterials,
         budget: &mut Budget,
     ) -> Result<(), FieldError> {
         let body = world.add_soft_body(self.build(materials, budget)?);

@@ -1,13 +1,14 @@
 //! Files embedded in a scene, so that it is self-contained. A picture is embedded as the voxels of its body, and
 //! several models of a file as one, so later changes of the rules for imports do not change the scene.
 
-use super::body::BodyText;
+use super::MAX_MATERIALS;
+use super::body::{BodyText, MaterialText};
 use super::budget::Budget;
-use super::error::FieldError;
+use super::error::{FieldError, require};
 use super::grid::{check_across, colours, wrong_type};
 use crate::import::{
-    FilePosition, FileType, ImportError, ImportNote, Model, NoteKind, Picture, PictureOptions,
-    Problem, png_of,
+    Colours, FilePosition, FileType, ImportError, ImportNote, Model, NoteKind, Picture,
+    PictureOptions, Problem, png_of,
 };
 use fuwafuwa::MAX_EXTENT;
 use std::io;
@@ -20,12 +21,14 @@ const SMALL: usize = 1 << 16;
 pub type Fetch<'a> = &'a dyn Fn(&str) -> io::Result<Vec<u8>>;
 
 impl BodyText {
-    /// Embeds the file of the body in a scene of `dim` dimensions. Returns the notes of its import.
+    /// Embeds the file of the body in a scene of `dim` dimensions. Adds the tints of a picture to the
+    /// materials of the scene. Returns the notes of its import.
     pub(super) fn embed_file(
         &mut self,
         dim: u8,
         fetch: Fetch,
         budget: &mut Budget,
+        materials: &mut Vec<MaterialText>,
     ) -> Result<Vec<ImportNote>, FieldError> {
         let Some(file) = self.file.clone().filter(|_| self.content.is_none()) else {
             return Ok(Vec::new());
@@ -40,7 +43,7 @@ impl BodyText {
         budget.take_pixels(bytes.len(), 1)?;
         let found = FileType::of(&bytes);
         match dim {
-            2 if found.is_readable_picture() => self.embed_picture(&file, bytes, budget),
+            2 if found.is_readable_picture() => self.embed_picture(&file, bytes, budget, materials),
             3 if found == FileType::Vox => self.embed_model(&file, &bytes, budget),
             _ => Err(wrong_type(&file, found, dim.into())),
         }
@@ -53,15 +56,21 @@ impl BodyText {
         file: &str,
         bytes: Vec<u8>,
         budget: &mut Budget,
+        materials: &mut Vec<MaterialText>,
     ) -> Result<Vec<ImportNote>, FieldError> {
         let across = self.n.unwrap_or(MAX_EXTENT);
         check_across(across)?;
-        let colours = colours(self)?;
+        let mut colours = colours(self)?;
         budget.take_picture(Picture::pixels_of(&bytes))?;
         let picture = Picture::decode(file, &bytes).map_err(FieldError::file)?;
         budget.take_pixels(picture.size().iter().product(), colours.named.len())?;
         let fill = self.fill.take().unwrap_or(true);
         let is_plain = self.plain.take().unwrap_or(false);
+        let keeps_colours = self.keep_colours.take().unwrap_or(false);
+        let expected =
+            "not allowed together with plain, nor with colours, which name the materials";
+        let good = !keeps_colours || !is_plain && colours.named.is_empty();
+        require(good, "keep_colours", expected)?;
         if is_plain && bytes.len() <= SMALL && FileType::of(&bytes) == FileType::Png {
             self.embed(&bytes);
             // An empty shape is reported when the body is built.
@@ -83,13 +92,55 @@ impl BodyText {
                 colours: colours.clone(),
                 fill,
             };
-            let import = picture.import(&options).map_err(FieldError::file)?;
+            let import = if keeps_colours {
+                let (import, tints) = picture.import_tinted(&options).map_err(FieldError::file)?;
+                colours = self.with_tints(&tints, materials)?;
+                import
+            } else {
+                picture.import(&options).map_err(FieldError::file)?
+            };
             (import.grid, import.notes)
         };
         let reduced = png_of(&grid, &colours);
         let missing = || FieldError::new("colours", "expected a colour for each material");
         self.embed(&reduced.ok_or_else(missing)?);
         Ok(notes)
+    }
+
+    /// Adds a material for each tint, with the values of the body's material. Names their colours in the body.
+    /// Returns the colours of the tints, numbered from 1.
+    fn with_tints(
+        &mut self,
+        tints: &[[u8; 3]],
+        materials: &mut Vec<MaterialText>,
+    ) -> Result<Colours, FieldError> {
+        let mut colours = Colours::default();
+        if tints.is_empty() {
+            return Ok(colours);
+        }
+        let number = self.material.take().unwrap_or(1);
+        let (count, own) = (materials.len(), usize::from(number).wrapping_sub(1));
+        let missing = || {
+            let reason = format!("expected 1 to {count}, found {number}");
+            FieldError::new("material", reason)
+        };
+        let like = materials.get(own).cloned().ok_or_else(missing)?;
+        let all = count + tints.len();
+        let expected = format!(
+            "expected {MAX_MATERIALS} materials at most together with the tints of the picture, found {all}"
+        );
+        require(all <= MAX_MATERIALS, "keep_colours", expected)?;
+        for (index, &tint) in (1..).zip(tints) {
+            materials.push(MaterialText {
+                colour: Some(tint),
+                ..like.clone()
+            });
+            let [red, green, blue] = tint;
+            let key = format!("#{red:02x}{green:02x}{blue:02x}");
+            self.colours.insert(key, materials.len() as u8);
+            colours.named.insert(tint, index);
+        }
+        Ok(colours)
     }
 
     /// Embeds the visible models of a file, or the part of it that the body is made from, as one model. A file

@@ -20,6 +20,7 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
     let expected = "only for a picture whose content is not embedded yet";
     require(text.fill.is_none(), "fill", expected)?;
     require(text.plain.is_none(), "plain", expected)?;
+    require(text.keep_colours.is_none(), "keep_colours", expected)?;
     let expected = "only a .vox file has parts with names";
     require(
         text.model.is_none() || text.file.is_some(),
@@ -38,12 +39,13 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
         }
     };
     let count = voxels.materials.len();
-    budget.take_voxels(count)?;
+    budget.check_voxels(count)?;
     budget.take_distances(text.part.len(), count)?;
     for (index, part) in text.part.iter().enumerate() {
         let part = Part::<D>::of(part).map_err(|wrong| wrong.inside("part", index))?;
         voxels.change(&part);
     }
+    budget.take_voxels(count, voxels.solid_count())?;
     let grid = VoxelGrid::from_materials(voxels.size, voxels.voxel_size, voxels.materials);
     grid.map_err(|error| FieldError::new("part", error))
 }
@@ -64,6 +66,11 @@ impl Voxels {
             voxel_size,
             materials: materials.collect(),
         }
+    }
+
+    fn solid_count(&self) -> usize {
+        let solid = self.materials.iter().filter(|&&material| material != 0);
+        solid.count()
     }
 
     fn change<D: Dim>(&mut self, part: &Part<D>) {
@@ -233,7 +240,7 @@ fn of_file<D: Dim>(text: &BodyText, file: &str, budget: &mut Budget) -> Result<V
             let model = model.map_err(FieldError::file)?;
             budget.take_model(model.work())?;
             let grid = model.grid(1.0, &colours).map_err(FieldError::file)?;
-            budget.check_model(grid.size())?;
+            budget.check_model(grid.solid_count())?;
             Ok(Voxels::of(&grid, voxel_size(text, &grid), |solid| solid))
         }
         (found, dim) => Err(wrong_type(&name, found, dim)),

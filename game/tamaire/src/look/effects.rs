@@ -3,7 +3,9 @@
 use super::confetti::Confetti;
 use super::feelings::{Feeling, MoodInput, largest_mass};
 use app_shell::CameraRig;
-use fuwafuwa::{Contact, Dim, DimVector, Event, NodeId, ObjectRef, Shape, SoftBody, Vec3};
+use fuwafuwa::{
+    Contact, Dim, DimVector, Event, NodeId, ObjectRef, Shape, SoftBody, Vec3, VoxelGrid,
+};
 use tamaire_play::{AnyRound, Round};
 
 /// Maximum number of particles.
@@ -142,13 +144,16 @@ impl Effects {
             let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
             let masses = std::mem::take(&mut self.start_masses);
             let mut masses = masses.into_iter();
-            let feeling = |(_, body): (_, &SoftBody<D>)| match masses.next() {
-                Some(mass) => Feeling::new(body, eye).since(body, mass),
-                None => Feeling::new(body, eye),
+            let feeling = |(place, (_, body)): (usize, (_, &SoftBody<D>))| {
+                let feeling = Feeling::new(body, eye, round.level().is_drawing(place));
+                match masses.next() {
+                    Some(mass) => feeling.since(body, mass),
+                    None => feeling,
+                }
             };
             *self = Self {
                 pressures: vec![0.0; bodies.clone().count()],
-                feelings: bodies.map(feeling).collect(),
+                feelings: bodies.enumerate().map(feeling).collect(),
                 gravity: Vec3::from(round.level().scene().gravity),
                 room: round.level().arena(),
                 axes: D::N,
@@ -186,7 +191,10 @@ impl Effects {
                     camera.shake(0.002 + 0.002 * energy.clamp(0.0, 2.0));
                     if looked_up < LOOKED_UP {
                         looked_up += 1;
-                        material = material_at(&world[body], point);
+                        let grids = round.level().tint_grids::<D>();
+                        let grid = grids.get(rank).and_then(Option::as_ref);
+                        let body = &world[body];
+                        material = material_at(body, grid.unwrap_or(body.grid()), point);
                     }
                     let count = if still { 1 } else { DUST };
                     (0..count).for_each(|_| self.spawn_dust(point.to_vec3(), material));
@@ -318,8 +326,9 @@ fn largest_masses<D: Dim>(round: &Round<D>) -> Vec<f32> {
     bodies.map(|(_, body)| largest_mass(body)).collect()
 }
 
-/// Returns the material of `body` at its node nearest to `at` [m].
-fn material_at<D: Dim>(body: &SoftBody<D>, at: D::Vector) -> u8 {
+/// Returns the number in `grid` at the node of `body` nearest to `at` [m]. `grid` is that of the body, or has its
+/// tints.
+fn material_at<D: Dim>(body: &SoftBody<D>, grid: &VoxelGrid<D>, at: D::Vector) -> u8 {
     let mesh = body.mesh();
     let square = |id: NodeId| {
         let position = body.node_state(id).0;
@@ -332,9 +341,7 @@ fn material_at<D: Dim>(body: &SoftBody<D>, at: D::Vector) -> u8 {
         .map(|(id, _)| (square(id), id))
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let element = nearest.and_then(|(_, id)| mesh.carriers_of(id).next());
-    element.map_or(1, |(element, _)| {
-        body.grid().material(mesh.first_voxel(element))
-    })
+    element.map_or(1, |(element, _)| grid.material(mesh.first_voxel(element)))
 }
 
 #[cfg(test)]
@@ -405,7 +412,7 @@ mod tests {
         };
         let materials = round.world().soft_bodies().map(|(_, body)| {
             let middle = body.piece_views()[0].centre;
-            material_at(body, middle.truncate())
+            material_at(body, body.grid(), middle.truncate())
         });
         assert_eq!(materials.collect::<Vec<_>>(), [1, 2]);
     }

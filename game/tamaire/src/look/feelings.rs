@@ -58,6 +58,8 @@ pub struct Feeling {
     /// In 3D: anchor of the drawn face on the skin.
     anchor: Option<FaceAnchor>,
     seat: Option<Seat>,
+    /// Whether the body is a drawing, with its face in the upper half.
+    is_drawing: bool,
     /// In 2D: offset from the seat to the current position of the drawn face [m]. The offset decays to zero.
     seat_offset: Vec3,
     strain: f32,
@@ -103,8 +105,9 @@ pub struct MoodInput {
 
 impl Feeling {
     /// Creates the feeling of an undisturbed body. In 3D the drawn face is turned towards `eye` [m], if
-    /// given.
-    pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vec3>) -> Self {
+    /// given. In 2D the drawn face of a drawing sits in the deepest place of the upper half, where the head
+    /// usually is; other bodies have it near their centre.
+    pub fn new<D: Dim>(body: &SoftBody<D>, eye: Option<Vec3>, is_drawing: bool) -> Self {
         let mut feeling = Self {
             mood: Mood::Calm,
             age: 9.0,
@@ -115,6 +118,7 @@ impl Feeling {
             middle: Vec3::ZERO,
             anchor: (D::N == 3).then(|| FaceAnchor::new(body, eye)),
             seat: None,
+            is_drawing,
             seat_offset: Vec3::ZERO,
             strain: 0.0,
             weight_strain: 0.0,
@@ -245,7 +249,7 @@ impl Feeling {
     /// Searches for a better seat. The drawn face glides there from its current position.
     fn choose_seat<D: Dim>(&mut self, body: &SoftBody<D>) {
         let before = self.seat.filter(|&seat| is_there(body, seat));
-        let after = best_seat(body, before.map(|seat| seat.node));
+        let after = best_seat(body, before.map(|seat| seat.node), self.is_drawing);
         if let (Some(old), Some(new)) = (self.seat, after)
             && old.node != new.node
         {
@@ -269,11 +273,15 @@ fn largest_piece<D: Dim>(body: &SoftBody<D>) -> PieceId {
 }
 
 /// Returns the best seat of a 2D drawn face: the node of the largest piece that is deepest inside and near
-/// the centre. The current node `now` is kept unless another one is clearly better.
-fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
+/// the centre, or for a drawing deepest in the upper half at rest. The current node `now` is kept unless another
+/// one is clearly better.
+fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>, is_drawing: bool) -> Option<Seat> {
     let (mesh, pieces) = (body.mesh(), body.pieces());
     let piece = largest_piece(body);
     let own = || mesh.nodes().filter(|&(id, _)| pieces.of_node(id) == piece);
+    let heights = || own().map(|(_, node)| node.at[1]);
+    let half = (heights().min().unwrap_or(0) + heights().max().unwrap_or(0)) / 2;
+    let is_seat = |at: [i32; 3]| !is_drawing || at[1] >= half;
     let skin: Vec<[i32; 3]> = body
         .facets()
         .filter(|facet| facet.piece == piece)
@@ -288,14 +296,18 @@ fn best_seat<D: Dim>(body: &SoftBody<D>, now: Option<NodeId>) -> Option<Seat> {
     let middle = sum / count.max(1e-9);
     let mut best: Option<(f32, Seat)> = None;
     // Stride that limits the number of distances in large bodies.
-    let stride = 1 + own().count() * skin.len() / MOST_LOOKS;
-    let seated = now.and_then(|now| own().find(|(id, _)| *id == now));
-    for (id, node) in seated.into_iter().chain(own().step_by(stride)) {
+    let seats = || own().filter(|(_, node)| is_seat(node.at));
+    let stride = 1 + seats().count() * skin.len() / MOST_LOOKS;
+    let seated = now.and_then(|now| seats().find(|(id, _)| *id == now));
+    for (id, node) in seated.into_iter().chain(seats().step_by(stride)) {
         let rest = node.at;
         let away = Vec3::from(rest.map(|k| k as f32)) - middle;
         let lazy = if now == Some(id) { LAZY } else { 0.0 };
         // Prefers nodes above the centre, so that a ring has its drawn face at the top.
-        let bonus = lazy - 0.3 * away.length() + 0.05 * away.y;
+        let bonus = match is_drawing {
+            true => lazy - 0.05 * away.x.abs(),
+            false => lazy - 0.3 * away.length() + 0.05 * away.y,
+        };
         // Stops early once this node cannot win any more, because the search runs often.
         let enough = best.map_or(0.0, |(score, _)| (score - bonus).max(0.0));
         let mut depth = f32::MAX;
@@ -370,7 +382,7 @@ mod tests {
             u8::from((10.0..24.0).contains(&from_middle.length()))
         });
         let (world, body) = alone(grid.expect("the grid is valid"));
-        let feeling = Feeling::new(&world[body], None);
+        let feeling = Feeling::new(&world[body], None, false);
         let radius = (feeling.at.truncate() - Vec2::splat(0.5)).length();
         assert!((0.25..0.45).contains(&radius), "{feeling:?}");
         assert!(
@@ -380,10 +392,35 @@ mod tests {
     }
 
     #[test]
+    fn face_of_drawing_sits_in_its_head() {
+        // A large belly with its centre at (24, 16) voxels, and above it a head of half its width at (24, 46).
+        let grid = VoxelGrid::<Dim2>::from_fn([48, 56, 1], 1.0 / 48.0, |[x, y, _]| {
+            let from = |y_of: f32| Vec2::new(x as f32 + 0.5 - 24.0, y as f32 + 0.5 - y_of).length();
+            u8::from(
+                from(16.0) < 16.0 || from(46.0) < 8.0 || x.abs_diff(24) < 3 && y < 40 && y > 16,
+            )
+        });
+        let (world, body) = alone(grid.expect("the grid is valid"));
+        let face = |is_drawing| {
+            let feeling = Feeling::new(&world[body], None, is_drawing);
+            (48.0 * feeling.at.truncate(), 48.0 * feeling.size)
+        };
+        let (at, size) = face(true);
+        // Inside a head of this size, nodes are up to four voxels apart.
+        assert!((at - Vec2::new(24.0, 46.0)).length() < 3.0, "{at}");
+        assert!(
+            (5.0..9.0).contains(&size),
+            "the head has a radius of 8: {size}"
+        );
+        let (at, _) = face(false);
+        assert!((at - Vec2::new(24.0, 16.0)).length() < 6.0, "{at}");
+    }
+
+    #[test]
     fn face_glides_to_remaining_piece_and_dust_has_none() {
         let grid = VoxelGrid::<Dim2>::ball(32, 1.0);
         let (mut world, body) = alone(grid.expect("the grid is valid"));
-        let mut feeling = Feeling::new(&world[body], None);
+        let mut feeling = Feeling::new(&world[body], None, false);
         let (before, size) = (feeling.at, feeling.size);
         let blade = Blade::segment(Vec2::new(0.375, -1.0), Vec2::new(0.375, 2.0));
         world.cut(body, &blade).unwrap();
@@ -400,14 +437,14 @@ mod tests {
         assert!(feeling.at[0] > before[0] + 0.05 && feeling.size < size);
         let grid = VoxelGrid::<Dim2>::ball(4, 0.05);
         let (dust, body) = alone(grid.expect("the grid is valid"));
-        assert_eq!(Feeling::new(&dust[body], None).size, 0.0);
+        assert_eq!(Feeling::new(&dust[body], None, false).size, 0.0);
     }
 
     #[test]
     fn face_3d_turns_with_body_and_returns_to_camera() {
         let grid = VoxelGrid::<Dim3>::ball(12, 1.0);
         let (mut world, soft) = alone(grid.expect("the grid is valid"));
-        let mut feeling = Feeling::new(&world[soft], None);
+        let mut feeling = Feeling::new(&world[soft], None, false);
         assert!(feeling.axes[2][2] > 0.99, "{feeling:?}");
         // Turns the body's back to the camera.
         let body = world.soft_body_mut(soft).unwrap();
@@ -436,7 +473,7 @@ mod tests {
         let grid = VoxelGrid::<Dim2>::ball(16, 1.0);
         let (world, body) = alone(grid.expect("the grid is valid"));
         let body = &world[body];
-        let mut feeling = Feeling::new(body, None);
+        let mut feeling = Feeling::new(body, None, false);
         let torn = MoodInput {
             tick: 1,
             torn: Some(Vec3::splat(99.0)),
@@ -493,7 +530,7 @@ mod tests {
             }
         };
         stretch(&mut world, 1.2, Vec2::X);
-        let mut feeling = Feeling::new(&world[soft], None);
+        let mut feeling = Feeling::new(&world[soft], None, false);
         let none = MoodInput::default();
         assert_eq!(
             mood(&mut feeling, &world[soft], none, 60),
@@ -519,11 +556,11 @@ mod tests {
         let (mut world, soft) = alone(VoxelGrid::<Dim2>::ball(16, 1.0).expect("the grid is valid"));
         let none = MoodInput::default();
         let whole = largest_mass(&world[soft]);
-        let mut unharmed = Feeling::new(&world[soft], None).since(&world[soft], whole);
+        let mut unharmed = Feeling::new(&world[soft], None, false).since(&world[soft], whole);
         assert_eq!(mood(&mut unharmed, &world[soft], none, 60), Mood::Calm);
         let blade = Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0));
         world.cut(soft, &blade).unwrap();
-        let mut halved = Feeling::new(&world[soft], None).since(&world[soft], whole);
+        let mut halved = Feeling::new(&world[soft], None, false).since(&world[soft], whole);
         assert_eq!(mood(&mut halved, &world[soft], none, 60), Mood::Sad);
     }
 
@@ -540,7 +577,7 @@ mod tests {
             mood(feeling, body, fate, 1);
             mood(feeling, body, none, 200)
         };
-        let mut feeling = Feeling::new(&world[soft], None);
+        let mut feeling = Feeling::new(&world[soft], None, false);
         let (face, size) = (feeling.at, feeling.size);
         let aside = face + Vec3::new(2.0 * size, 0.0, 0.0);
         assert_eq!(
@@ -550,7 +587,7 @@ mod tests {
         let near = face + Vec3::new(0.5 * size, 0.0, 0.0);
         assert_eq!(after(&mut feeling, torn_at(near), &world[soft]), Mood::Sad);
 
-        let mut feeling = Feeling::new(&world[soft], None);
+        let mut feeling = Feeling::new(&world[soft], None, false);
         let blade = Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0));
         world.cut(soft, &blade).unwrap();
         assert_eq!(mood(&mut feeling, &world[soft], none, 200), Mood::Sad);

@@ -131,7 +131,10 @@ impl Maps {
 fn faces<D: Dim>(round: &Round<D>, eye: Option<Vec3>) -> Vec<Face> {
     let bodies = round.world().soft_bodies().enumerate();
     bodies
-        .map(|(number, (_, body))| face_at_rest(number, &Feeling::new(body, eye), 1.0))
+        .map(|(number, (_, body))| {
+            let feeling = Feeling::new(body, eye, round.level().is_drawing(number));
+            face_at_rest(number, &feeling, 1.0)
+        })
         .collect()
 }
 

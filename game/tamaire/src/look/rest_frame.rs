@@ -3,20 +3,21 @@
 use super::Face;
 use super::feelings::Feeling;
 use app_shell::{Theme, View};
-use fuwafuwa::Vec2;
-use fuwafuwa_render::{Basket, Camera, DimCamera, Frame};
-use tamaire_play::Round;
+use fuwafuwa::{Dim, Vec2};
+use fuwafuwa_render::{Basket, Camera, DimCamera, Frame, Tints};
+use tamaire_play::{Level, Round};
 
 /// Returns the render frame of a round without effects, drawn faces or ghost.
 pub(super) fn frame<'a, C: DimCamera>(
     camera: C,
-    round: &Round<C::Dim>,
+    round: &'a Round<C::Dim>,
     theme: &'a Theme,
 ) -> Frame<'a, C> {
     let fill = (round.progress().inside / round.level().game().share).clamp(0.0, 1.0);
     Frame {
         camera,
         palette: &theme.world,
+        tints: tints(round.level()),
         look: fuwafuwa_render::Look::Skin,
         basket: round.basket().map(|&region| Basket { region, fill }),
         particles: &[],
@@ -24,6 +25,14 @@ pub(super) fn frame<'a, C: DimCamera>(
         ghost: None,
         props: &[],
         seconds: 0.0,
+    }
+}
+
+/// Returns the colours that a level gives to its materials.
+fn tints<D: Dim>(level: &Level) -> Tints<'_, D> {
+    Tints {
+        colours: level.colours(),
+        grids: level.tint_grids(),
     }
 }
 

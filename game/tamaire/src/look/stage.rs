@@ -90,7 +90,7 @@ impl Stage {
             ..camera
         };
         self.follow_ages(round, look);
-        let specks = particles(look);
+        let specks = particles(look, round.level());
         let stickers: Vec<Sticker> = faces(round, look).iter().map(Face::sticker).collect();
         let frame = Frame {
             look: shown(look, &self.ages),
@@ -117,7 +117,7 @@ impl Stage {
             (side as u32).max(1)
         });
         self.follow_ages(round, look);
-        let specks = particles(look);
+        let specks = particles(look, round.level());
         let frame = Frame {
             look: shown(look, &self.ages),
             particles: &specks,
@@ -214,10 +214,14 @@ fn shown<'a>(look: &DrawOptions, ages: &'a Ages) -> fuwafuwa_render::Look<'a> {
     }
 }
 
-fn particles(look: &DrawOptions) -> Vec<Particle> {
+fn particles(look: &DrawOptions, level: &Level) -> Vec<Particle> {
     let world = &look.theme.world;
     let specks = look.effects.specks.iter().map(|speck| {
-        let own = world.material(speck.material);
+        let index = usize::from(speck.material).wrapping_sub(1);
+        let own = match level.colours().get(index) {
+            Some(Some(colour)) => colour.map(|channel| f32::from(channel) / 255.0),
+            _ => world.material(speck.material),
+        };
         // Particles of fresh material get the same share of the fresh colour as torn surfaces.
         let share = if speck.is_fresh { 0.7 } else { 0.0 };
         let [red, green, blue] = [0, 1, 2].map(|k| own[k] + share * (world.fresh[k] - own[k]));
@@ -242,7 +246,9 @@ fn faces<D: Dim>(round: &Round<D>, look: &DrawOptions) -> Vec<Face> {
         true => &look.effects.feelings,
         false => {
             let eye = look.view.space.map(|camera| camera.eye());
-            fresh = bodies.map(|body| Feeling::new(body, eye)).collect();
+            let level = round.level();
+            let feeling = |(place, body)| Feeling::new(body, eye, level.is_drawing(place));
+            fresh = bodies.enumerate().map(feeling).collect();
             &fresh
         }
     };

@@ -1,6 +1,6 @@
 //! Levels around a body from a file: the built-in level that surrounds it, and the body's size and place there.
 
-use super::most_voxels;
+use super::most_solid;
 use fuwafuwa::{Dim, Dim2, Dim3};
 use fuwafuwa_scenes::import::FileType;
 use fuwafuwa_scenes::scene::{Scene, SceneError};
@@ -41,7 +41,7 @@ impl BodySize {
     fn in_dim<D: Dim>(scene: &Scene) -> Result<Self, SceneError> {
         let mut alone = scene.clone();
         alone.body.truncate(1);
-        let world = alone.build_within::<D>(most_voxels::<D>(scene))?;
+        let world = alone.build_within::<D>(most_solid::<D>(scene))?;
         let mut size = Self {
             widths: [0.0; 3],
             content: 0.0,
