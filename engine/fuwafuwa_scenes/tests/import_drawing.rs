@@ -705,3 +705,21 @@ fn wrong_colours_are_named() {
         "{wrong}"
     );
 }
+
+#[test]
+fn table_around_slightly_turned_paper_is_left_out() {
+    let plain = import(&coloured_figure().png(), 60);
+    for degrees in [0.7f64, 2.5, -5.0] {
+        let mut sheet = coloured_figure();
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        sheet.paint([70.0, 60.0, 55.0], |x, y| {
+            let (x, y) = (x - 200.0, y - 280.0);
+            (x * cosine + y * sine).abs() > 200.0 || (y * cosine - x * sine).abs() > 280.0
+        });
+        let turned = import(&sheet.png(), 60);
+        assert_eq!(materials(&turned.grid), materials(&plain.grid), "{degrees}");
+        let kinds = turned.notes.iter().map(|note| &note.kind);
+        let left_out = kinds.filter(|kind| **kind == NoteKind::Surroundings { left_out: 4 });
+        assert_eq!(left_out.count(), 1, "{:?}", turned.notes);
+    }
+}

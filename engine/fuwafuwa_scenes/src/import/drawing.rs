@@ -18,6 +18,10 @@ const THICKENED: [(f64, f64); 2] = [(0.375, 0.8), (0.75, 0.4)];
 /// Share of the edge of a picture along which something lies that is not part of the drawing, such as a table
 /// below the paper.
 const SURROUNDING: f64 = 0.2;
+/// Maximum ratio of the sides of a wedge: what a photo of slightly turned paper shows of the table at each side.
+const WEDGE: f64 = 0.25;
+/// Minimum share of the length of a wedge that lies at the edge of the picture.
+const WEDGE_AT_EDGE: f64 = 0.8;
 /// Minimum thickness of such surroundings, in widths of the pen of the drawing. What is thinner is an outline to
 /// which the picture was cropped.
 const THICK: f64 = 2.0;
@@ -114,9 +118,18 @@ pub(super) fn solid(ink: &Mask, across: usize, fill: bool) -> Solid {
 fn without_surroundings(ink: &Mask) -> (Mask, usize) {
     let components = ink.components();
     let [width, height] = ink.size;
-    let is_along_edge = |component: &Component| {
-        component.at_edge as f64 > SURROUNDING * 2.0 * (width + height) as f64
-    };
+    let is_much = |at_edge: usize| at_edge as f64 > SURROUNDING * 2.0 * (width + height) as f64;
+    let wedges = components
+        .list
+        .iter()
+        .filter(|component| is_wedge(component));
+    let (wedges, at_edge) = wedges.fold((0, 0), |(count, sum), wedge| {
+        (count + 1, sum + wedge.at_edge)
+    });
+    // A single one may be the ground of the drawing.
+    let has_wedges = wedges > 1 && is_much(at_edge);
+    let is_along_edge =
+        |component: &Component| is_much(component.at_edge) || has_wedges && is_wedge(component);
     if !components.list.iter().any(is_along_edge) {
         return (ink.clone(), 0);
     }
@@ -128,7 +141,8 @@ fn without_surroundings(ink: &Mask) -> (Mask, usize) {
     let pen = components.kept(ink.size, is_drawing).stroke_width();
     let thick = THICK * pen.min(WIDEST_PEN * ink.longer() as f64);
     let is_around = |component: &Component| {
-        is_along_edge(component) && component.area as f64 > thick * component.at_edge as f64
+        let is_thick = component.area as f64 > thick * component.at_edge as f64;
+        is_along_edge(component) && (is_thick || has_wedges && is_wedge(component))
     };
     let around = components
         .list
@@ -140,6 +154,14 @@ fn without_surroundings(ink: &Mask) -> (Mask, usize) {
     }
     let drawing = components.kept(ink.size, |component| !is_around(component));
     (drawing, around)
+}
+
+/// Returns whether a component is long and thin, and lies along the edge of the picture.
+fn is_wedge(component: &Component) -> bool {
+    let [columns, rows] = &component.extent;
+    let long = longer(&component.extent) as f64;
+    let short = columns.len().min(rows.len()) as f64;
+    short < WEDGE * long && component.at_edge as f64 >= WEDGE_AT_EDGE * long
 }
 
 /// Removes specks. Returns the number of specks.
