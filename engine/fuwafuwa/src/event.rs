@@ -110,9 +110,10 @@ pub enum Event<D: Dim> {
         body: RigidBodyHandle,
     },
     /// A piece hit something by more than a voxel per substep. While such an impact lasts, the piece moves by
-    /// a share of its velocity relative to what it hits, so that it neither passes through nor flattens.
-    /// Momentum is exact, but the piece falls behind, and it bounces off slower than with shorter substeps.
-    /// Sent once per piece and tick.
+    /// a share of its velocity relative to what it hits, so that it does not pass through. Momentum is exact,
+    /// but the piece falls behind, and it bounces off slower than with shorter substeps. Two limits remain: soft
+    /// bodies may pass partly through each other, and a kinematic body that moves by more than half its thickness
+    /// per substep may pass through a piece. Sent once per piece and tick.
     ImpactSlowed {
         /// Body of the piece.
         body: SoftBodyHandle,

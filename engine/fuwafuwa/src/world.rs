@@ -189,9 +189,7 @@ impl<D: Dim> World<D> {
     }
 
     fn start_tick(&mut self) {
-        self.bodies
-            .iter_mut()
-            .for_each(SoftBody::store_start_positions);
+        self.bodies.iter_mut().for_each(SoftBody::start_tick);
         for rigid in self.rigids.iter_mut() {
             rigid.start_tick(self.config.tick);
         }

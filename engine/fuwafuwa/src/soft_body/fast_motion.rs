@@ -41,19 +41,20 @@ impl Pace {
 }
 
 impl<D: Dim> SoftBody<D> {
-    /// Returns the highest speed of an awake node [m/s].
-    pub(crate) fn fastest_node(&self) -> f32 {
-        let velocities = &self.state.velocity;
-        let mut fastest = 0.0f32;
-        for &id in &self.cache.awake {
-            let squared = inner::<D>(velocities[id], velocities[id]);
-            // A comparison is faster than `f32::max`, with which each iteration of the loop would wait for the
-            // previous one.
-            if squared > fastest {
-                fastest = squared;
-            }
+    /// Returns the highest speed of an awake node [m/s], or 0 if no node moved at half of `limit` [m/s] in the last
+    /// substep: forces hardly ever double a speed in a substep, and then the next one limits it.
+    pub(crate) fn fastest_node(&self, limit: f32) -> f32 {
+        if 2.0 * self.cache.fastest <= limit {
+            return 0.0;
         }
-        fastest.sqrt()
+        let velocities = self.cache.awake.iter().map(|&id| self.state.velocity[id]);
+        let squares = velocities.map(|velocity| inner::<D>(velocity, velocity));
+        squares
+            .fold(
+                0.0f32,
+                |most, square| if square > most { square } else { most },
+            )
+            .sqrt()
     }
 
     /// Returns the nodes of all pieces in fast impacts, with their velocities.

@@ -96,6 +96,7 @@ impl<D: Dim> SoftBody<D> {
             .resize(self.topology.pieces.list.len(), RigidMotionF32::default());
         let (rigid, pieces) = (self.cache.rigid.as_slice(), &self.topology.pieces);
         let paces = self.cache.paces.as_slice();
+        let is_paced = !paces.is_empty();
         let (velocities, inverse_mass) = (&self.state.velocity, &self.state.inverse_mass);
         let lists = [&mut self.state.position, &mut self.state.ahead];
         let rows = threads::rows(&self.cache.awake, lists.map(|rows| rows.as_mut_slice()));
@@ -109,10 +110,10 @@ impl<D: Dim> SoftBody<D> {
                 let node = id.index() - rows.first;
                 let velocity = velocities[id];
                 let piece = pieces.of_node(id).index();
-                let (moved, lead) = match paces.get(piece) {
-                    Some(pace) if inverse_mass[id] > 0.0 => (pace.of(velocity), lead * pace.share),
-                    _ => (velocity, lead),
-                };
+                let (mut moved, mut lead) = (velocity, lead);
+                if is_paced && inverse_mass[id] > 0.0 {
+                    (moved, lead) = (paces[piece].of(velocity), lead * paces[piece].share);
+                }
                 let squared = inner::<D>(moved, moved);
                 // A comparison is faster than `f32::max`, with which each iteration of the loop would wait
                 // for the previous one.
@@ -126,8 +127,9 @@ impl<D: Dim> SoftBody<D> {
             }
             fastest
         });
-        let fastest = fastest.into_iter().fold(0.0, f32::max);
-        fastest.sqrt() * duration
+        let fastest = fastest.into_iter().fold(0.0, f32::max).sqrt();
+        self.cache.fastest = if is_paced { f32::INFINITY } else { fastest };
+        fastest * duration
     }
 
     /// Recomputes the list of awake nodes if it is outdated.

@@ -8,8 +8,8 @@ use crate::foundation::dim::{Dim, inner};
 use crate::foundation::ids::PieceId;
 use crate::math::row::Row;
 use crate::rigid_body::RigidBodies;
+use crate::soft_body::SoftBodies;
 use crate::soft_body::fast_motion::Pace;
-use crate::soft_body::{SoftBodies, SoftBody};
 use std::collections::BTreeMap;
 
 /// Maximum distance by which a piece and what it hits come closer in a substep [voxels]. If a rigid body is
@@ -24,19 +24,20 @@ impl<D: Dim> World<D> {
     /// Slows the pieces in impacts that are too fast for a substep of `duration` [s], and limits the
     /// deformation of the other fast ones.
     pub(super) fn limit_fast_motion(&mut self, duration: f32, report: &mut StepReport) {
-        let moved = |body: &SoftBody<D>| body.fastest_node() * duration;
-        let voxel = |body: &SoftBody<D>| body.grid().voxel_size();
-        let all = self.bodies.by_slot();
-        let moved: Vec<(BodySlot, f32, f32)> = all
-            .map(|(slot, body)| (slot, moved(body), voxel(body)))
-            .collect();
         self.bodies.iter_mut().for_each(|body| body.clear_paces());
+        let voxels = self.bodies.iter().map(|body| body.grid().voxel_size());
         let thinnest = self.rigids.iter().map(|rigid| rigid.shape().inner_radius());
-        let room = { moved.iter() }.map(|&(_, _, voxel)| MAX_CLOSING * voxel);
-        let room = room.chain(thinnest).fold(f32::INFINITY, f32::min);
-        let rigids = self.rigids.iter().map(|rigid| rigid.top_speed() * duration);
-        let fastest = { moved.iter() }.map(|&(_, moved, _)| moved);
-        if fastest.chain(rigids).all(|moved| moved <= room) {
+        let room = voxels.map(|voxel| MAX_CLOSING * voxel).chain(thinnest);
+        let limit = room.fold(f32::INFINITY, f32::min) / duration;
+        let rigids = self.rigids.iter().map(|rigid| rigid.top_speed());
+        let fastest =
+            { self.bodies.by_slot() }.map(|(slot, body)| (slot, body.fastest_node(limit)));
+        let fastest: Vec<(BodySlot, f32)> = fastest.collect();
+        if { fastest.iter() }
+            .map(|&(_, speed)| speed)
+            .chain(rigids)
+            .all(|speed| speed <= limit)
+        {
             return;
         }
         let mut slowed = node_impacts(&self.nearby, &self.bodies, &self.rigids, duration);
@@ -46,10 +47,11 @@ impl<D: Dim> World<D> {
             let least = self.slowed.entry((body, piece)).or_insert(1.0);
             *least = least.min(pace.share);
         }
-        for (slot, moved, voxel) in moved {
-            if moved > voxel {
-                let body = self.bodies.at_mut(slot);
-                report.speed_limited += body.limit_deformation(voxel / duration);
+        for (slot, speed) in fastest {
+            let body = self.bodies.at_mut(slot);
+            let limit = body.grid().voxel_size() / duration;
+            if speed > limit {
+                report.speed_limited += body.limit_deformation(limit);
             }
         }
     }
