@@ -109,6 +109,19 @@ pub enum Event<D: Dim> {
         /// Handle of the removed rigid body.
         body: RigidBodyHandle,
     },
+    /// A piece hit something by more than a voxel per substep. While such an impact lasts, the piece moves by
+    /// a share of its velocity relative to what it hits, so that it does not pass through. Momentum is exact,
+    /// but the piece falls behind, and it bounces off slower than with shorter substeps. Two limits remain: soft
+    /// bodies may pass partly through each other, and a kinematic body that moves by more than half its thickness
+    /// per substep may pass through a piece. Sent once per piece and tick.
+    ImpactSlowed {
+        /// Body of the piece.
+        body: SoftBodyHandle,
+        /// Number of the piece.
+        piece: PieceId,
+        /// Smallest share of its velocity by which the piece moved in a substep of the tick, 0 to 1.
+        share: f32,
+    },
     /// A piece became non-finite or too fast. The engine froze the piece permanently, so that it cannot
     /// affect the rest of the world.
     Quarantined {
@@ -135,6 +148,7 @@ hash_state! {
         PieceRemoved { body, piece },
         SoftBodyRemoved { body },
         RigidBodyRemoved { body },
+        ImpactSlowed { body, piece, share },
         Quarantined { body, piece },
     }
 }
@@ -200,6 +214,12 @@ pub struct StepReport {
     /// Number of elements that are turned inside out at the end of the tick. Their elastic forces turn them
     /// back.
     pub inverted: u32,
+    /// Number of pieces in impacts of more than a voxel per substep during the tick, see
+    /// [`Event::ImpactSlowed`].
+    pub slowed_impacts: u32,
+    /// Number of nodes, summed over the substeps, whose speed relative to the rigid motion of their piece was
+    /// limited to a voxel per substep. The piece keeps its momentum but loses energy.
+    pub speed_limited: u32,
     /// Number of pieces that were frozen permanently during the tick, see [`Event::Quarantined`].
     pub quarantined: u32,
 }

@@ -5,6 +5,7 @@ pub mod damping;
 pub mod element_forces;
 pub mod element_law;
 pub mod element_state;
+pub(crate) mod fast_motion;
 pub mod momentum;
 pub mod plasticity;
 pub mod view;

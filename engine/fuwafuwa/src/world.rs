@@ -6,6 +6,7 @@ mod config;
 mod contact_events;
 mod contents;
 mod cuts;
+mod fast_impacts;
 mod hooks;
 mod removal;
 mod sleep;
@@ -29,6 +30,7 @@ use crate::query::query_cache::QueryCache;
 use crate::rigid_body::RigidBodies;
 use crate::soft_body::damping::{PieceDamping, PieceMotion, apply_damping, motions};
 use crate::soft_body::{SoftBodies, SoftBody};
+use crate::world::fast_impacts::SlowedPieces;
 use crate::world::sleep::{fall_asleep, fall_asleep_rigid, wake};
 pub use body_handle::{BodyHandle, Removable};
 pub use config::{DEFAULT_SUBSTEPS, DEFAULT_TICK, MAX_TICK, MIN_SUBSTEPS, MIN_TICK, WorldConfig};
@@ -48,8 +50,7 @@ const SETTLING: f32 = 2.0;
 /// over its nodes. A body that starts to fall exceeds this speed after 0.5 mm. At a higher threshold, the
 /// braking of sliding pieces would be visible.
 const SETTLING_SPEED: f64 = 0.1;
-/// Node speed above which a piece is quarantined [m/s]. Speeds are also limited to one voxel per substep. At
-/// the usual 960 substeps a second, this constant therefore matters only for voxels wider than 1 m.
+/// Node speed above which a piece is quarantined [m/s].
 const TOP_SPEED: f32 = 1000.0;
 
 /// Simulated world: soft bodies, rigid bodies, joints and knives. [`World::step`] advances its time.
@@ -73,6 +74,9 @@ pub struct World<D: Dim> {
     contacts: Contacts,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(crate) query_cache: QueryCache,
+    /// Pieces slowed in this tick; empty between ticks.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    slowed: SlowedPieces,
 }
 
 /// World in 2D.
@@ -84,7 +88,7 @@ pub type World3 = World<Dim3>;
 hash_state! {
     [D: Dim] struct World<D> {
         config, bodies, rigids, joints, knives, ticks, nearby, events, touching, inside,
-    } skip { contacts, query_cache }
+    } skip { contacts, query_cache, slowed }
 }
 
 impl<D: Dim> World<D> {
@@ -108,6 +112,7 @@ impl<D: Dim> World<D> {
             inside: Vec::new(),
             contacts: Contacts::default(),
             query_cache: QueryCache::default(),
+            slowed: SlowedPieces::default(),
         })
     }
 
@@ -153,6 +158,8 @@ impl<D: Dim> World<D> {
                 self.damp(duration);
             }
             self.integrate_velocities(duration, hooks);
+            self.nearby.follow(&self.bodies, &self.rigids, duration);
+            self.limit_fast_motion(duration, &mut report);
             let hits = self.solve_constraints(duration);
             self.integrate_positions(duration);
             self.wake(&hits.pieces);
@@ -163,6 +170,7 @@ impl<D: Dim> World<D> {
         }
         report.inverted = self.bodies.iter().map(SoftBody::inverted_count).sum();
         self.quarantine(&mut report);
+        self.report_slowed(&mut report);
         self.sleep();
         self.end_tick();
         report
@@ -181,9 +189,7 @@ impl<D: Dim> World<D> {
     }
 
     fn start_tick(&mut self) {
-        self.bodies
-            .iter_mut()
-            .for_each(SoftBody::store_start_positions);
+        self.bodies.iter_mut().for_each(SoftBody::start_tick);
         for rigid in self.rigids.iter_mut() {
             rigid.start_tick(self.config.tick);
         }
@@ -269,8 +275,6 @@ impl<D: Dim> World<D> {
     /// end.
     fn solve_constraints(&mut self, duration: f32) -> Hits {
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
-        let nearby = &mut self.nearby;
-        nearby.follow(bodies, rigids, duration);
         let (broken, woken) = joint::solve(&mut self.joints, bodies, rigids, duration);
         let woken_by_knives = self.solve_knife_contacts(duration);
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);

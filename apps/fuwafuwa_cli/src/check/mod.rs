@@ -3,6 +3,8 @@
 mod beam;
 mod doughnut;
 mod energy;
+mod free_fall;
+mod impact;
 mod momentum;
 mod motion;
 mod parallel;
@@ -55,6 +57,10 @@ enum Which {
     Stack,
     /// A ring squeezed shut must not pass through itself.
     Doughnut,
+    /// Bodies in flight must move like a point mass, at every size and speed.
+    FreeFall,
+    /// Fast bodies must not pass through a plate, must keep their momentum, and a pin on a fast carrier must hold.
+    Impact,
     /// All checks.
     All,
 }
@@ -63,7 +69,7 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 10] = [
+    let checks: [(Which, Check); 12] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
@@ -74,6 +80,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         (Which::Pile, pile::check),
         (Which::Stack, stack::check),
         (Which::Doughnut, doughnut::check),
+        (Which::FreeFall, free_fall::check),
+        (Which::Impact, impact::check),
     ];
     let mut outcomes = Vec::new();
     for (name, check) in checks {

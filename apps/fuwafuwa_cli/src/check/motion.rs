@@ -1,6 +1,7 @@
 //! Helpers shared by the checks of moving bodies.
 
 use anyhow::Result;
+use fuwafuwa::glam::DVec3;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{Dim, DimVector, Grading, Law, Material, NodeId, SoftBody, Vec3, VoxelGrid};
 
@@ -55,4 +56,11 @@ pub fn at_rest<D: Dim>(body: &SoftBody<D>, id: NodeId) -> Vec3 {
         rest[axis] = at[axis] as f32 * size - 0.5;
     }
     rest
+}
+
+/// Returns the centre of mass of a body [m].
+pub fn centre<D: Dim>(body: &SoftBody<D>) -> DVec3 {
+    let states = body.mesh().nodes().map(|(id, _)| body.node_state(id));
+    let moments = states.map(|(at, _, mass)| at.to_vec3().as_dvec3() * f64::from(mass));
+    moments.sum::<DVec3>() / body.total_mass()
 }

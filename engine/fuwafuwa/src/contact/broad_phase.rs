@@ -169,7 +169,7 @@ impl Nearby {
     pub fn follow<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies, duration: f32) {
         self.nodes
             .follow(bodies, rigids, duration, self.remaining_time);
-        let changed = self.pairs.follow(&mut self.spheres, bodies);
+        let changed = self.pairs.follow(&mut self.spheres, bodies, duration);
         if !self.knows_embedded {
             self.embedded.find(&self.spheres, &self.pairs.list, bodies);
             self.knows_embedded = true;

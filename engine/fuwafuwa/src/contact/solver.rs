@@ -130,7 +130,10 @@ impl Contacts {
                 let relative = velocity - own;
                 let size = body.grid().voxel_size();
                 let approach = inner::<D>(relative, normal);
-                if !is_close(gap, approach, size, duration) {
+                let share = body.pace_share(body.pieces().of_node(node));
+                let duration = duration * share;
+                let is_close = is_close(gap, approach, size, duration) || share < 1.0 && gap < size;
+                if !is_close {
                     pair.impulse.clear();
                     // A contact becomes active below a gap of `CLOSE` voxels. The factor 1.1 allows for
                     // rounding.
@@ -242,7 +245,12 @@ impl Contacts {
                 }
                 let relative = all.velocities[a] - all.velocities[b];
                 let approach = inner::<D>(relative, normal);
-                if !is_close(gap, approach, touching, duration) {
+                let shares = both.map(|sphere| bodies.at(sphere.body).pace_share(sphere.piece));
+                let share = shares[0].min(shares[1]);
+                let duration = duration * share;
+                let is_close =
+                    is_close(gap, approach, touching, duration) || share < 1.0 && gap < touching;
+                if !is_close {
                     pair.impulse.clear();
                     continue;
                 }

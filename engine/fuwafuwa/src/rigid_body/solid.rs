@@ -119,6 +119,15 @@ impl Solid {
         }
     }
 
+    /// Returns the radius of the largest ball that fits into the solid [m]; infinite for a half-space.
+    pub fn inner_radius(&self) -> f32 {
+        match *self {
+            Self::HalfSpace { .. } => f32::INFINITY,
+            Self::Box { half, .. } | Self::OrientedBox { half, .. } => half.min_element(),
+            Self::Capsule { radius, .. } | Self::Ball { radius, .. } => radius,
+        }
+    }
+
     /// Returns the signed distance of a point from the surface [m], negative inside, and the outward unit
     /// normal at the nearest point of the surface.
     // Inlined, because a call would pass the point through memory, which takes as long as the computation.

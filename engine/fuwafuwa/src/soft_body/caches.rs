@@ -5,12 +5,13 @@ use crate::foundation::dim::Point;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::fracture::breakable_nodes::BreakableNodes;
 use crate::soft_body::element_forces::Row;
+use crate::soft_body::fast_motion::Pace;
 use crate::soft_body::momentum::RigidMotionF32;
 use crate::topology::changes::History;
 
 /// Data derived from the topology and the state of a body. Snapshots do not contain these data.
-/// `SoftBody::rebuild` recomputes them after loading, except the three last fields: `history` starts empty,
-/// and each tick begins by setting `rigid` and `before`.
+/// `SoftBody::rebuild` recomputes them after loading, except the five last fields: `history` starts empty,
+/// each tick begins by setting `rigid`, `before` and `fastest`, and each substep sets `paces`.
 #[derive(Clone, Debug, Default)]
 pub struct Cache {
     /// Properties of the body, combined from its materials.
@@ -35,4 +36,8 @@ pub struct Cache {
     /// Lattice point and position [m] of every node at the start of the tick, by id. The position of an
     /// unused id is NaN.
     pub before: Vec<(Point, Row)>,
+    /// Highest speed at which a node moved in the last substep [m/s]; infinite at the start of a tick.
+    pub fastest: f32,
+    /// Paces of the pieces in a fast impact; empty if there are none.
+    pub paces: Vec<Pace>,
 }

@@ -77,7 +77,7 @@ impl PieceMotion {
 
     /// Returns the rigid motion that has the linear and angular momentum of the piece; zero for a sleeping
     /// piece.
-    fn rigid(&self) -> RigidMotion {
+    pub fn rigid(&self) -> RigidMotion {
         if self.nodes == 0 {
             return RigidMotion::default();
         }

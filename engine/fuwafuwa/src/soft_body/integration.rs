@@ -26,6 +26,7 @@ impl<D: Dim> SoftBody<D> {
             let all: Vec<ElementId> = self.topology.mesh.elements().map(|(id, _)| id).collect();
             self.reset_rotations(&all);
         }
+        let before = self.velocities_of_slowed();
         self.state.batches.evaluate(&self.state.ahead);
         let gravity = Row::from(gravity) * self.state.gravity_scale;
         let update = VelocityUpdate {
@@ -37,6 +38,11 @@ impl<D: Dim> SoftBody<D> {
         self.state
             .batches
             .update_velocities(&update, &mut self.state.velocity);
+        for (id, before) in before {
+            let share = self.pace_share(self.topology.pieces.of_node(id));
+            let velocity = &mut self.state.velocity[id];
+            *velocity = before + (*velocity - before) * share;
+        }
     }
 
     /// Adds to velocities the change that an acceleration field [m/s²] causes in `duration` [s].
@@ -79,54 +85,51 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Moves every awake node by its velocity for `duration` [s]. Also extrapolates the positions by `lead`
-    /// [s], for the next evaluation of forces. The extrapolation uses velocities relative to the rigid motion
-    /// of the piece, so that pure rotation is not damped.
-    ///
-    /// No node moves by more than a voxel per substep. Faster nodes would invert elements, and the forces
-    /// would grow from substep to substep. Returns the distance that the fastest node has moved [m].
+    /// Moves every awake node by its velocity for `duration` [s]; in a fast impact by the share that its
+    /// [`Pace`] allows. Also extrapolates the positions by `lead` [s], for the next evaluation of forces. The
+    /// extrapolation uses velocities relative to the rigid motion of the piece, so that pure rotation is not
+    /// damped. Returns the distance that the fastest node has moved [m].
     pub(crate) fn move_nodes(&mut self, duration: f32, lead: f32) -> f32 {
-        let top_speed = self.topology.grid.voxel_size() / duration;
         // Gives pieces that were created since the last damping round a rigid motion of zero.
         self.cache
             .rigid
             .resize(self.topology.pieces.list.len(), RigidMotionF32::default());
         let (rigid, pieces) = (self.cache.rigid.as_slice(), &self.topology.pieces);
-        let lists = [
-            &mut self.state.position,
-            &mut self.state.velocity,
-            &mut self.state.ahead,
-        ];
+        let paces = self.cache.paces.as_slice();
+        let is_paced = !paces.is_empty();
+        let (velocities, inverse_mass) = (&self.state.velocity, &self.state.inverse_mass);
+        let lists = [&mut self.state.position, &mut self.state.ahead];
         let rows = threads::rows(&self.cache.awake, lists.map(|rows| rows.as_mut_slice()));
         let fastest = threads::map(rows, move |rows| {
-            // Three slices of one length need only one bounds check per node, and local variables are not
-            // reloaded for each node. This matters because small bodies spend about a tenth of their time in
-            // this loop.
+            // Slices of one length need only one bounds check per node, and local variables are not reloaded
+            // for each node. This matters because small bodies spend about a tenth of their time in this loop.
             let count = rows.lists[0].len();
-            let [positions, velocities, ahead] = rows.lists.map(|list| &mut list[..count]);
+            let [positions, ahead] = rows.lists.map(|list| &mut list[..count]);
             let mut fastest = 0.0f32;
             for &id in rows.nodes {
                 let node = id.index() - rows.first;
-                let mut velocity = velocities[node];
-                let squared = inner::<D>(velocity, velocity);
+                let velocity = velocities[id];
+                let piece = pieces.of_node(id).index();
+                let (mut moved, mut lead) = (velocity, lead);
+                if is_paced && inverse_mass[id] > 0.0 {
+                    (moved, lead) = (paces[piece].of(velocity), lead * paces[piece].share);
+                }
+                let squared = inner::<D>(moved, moved);
                 // A comparison is faster than `f32::max`, with which each iteration of the loop would wait
                 // for the previous one.
                 if squared > fastest {
                     fastest = squared;
                 }
-                if squared > top_speed * top_speed {
-                    velocity *= top_speed / squared.sqrt();
-                    velocities[node] = velocity;
-                }
-                let position = positions[node] + velocity * duration;
+                let position = positions[node] + moved * duration;
                 positions[node] = position;
-                let whole = rigid[pieces.of_node(id).index()].at::<D>(position);
+                let whole = rigid[piece].at::<D>(position);
                 ahead[node] = position + (velocity - whole) * lead;
             }
             fastest
         });
-        let fastest = fastest.into_iter().fold(0.0, f32::max);
-        fastest.sqrt().min(top_speed) * duration
+        let fastest = fastest.into_iter().fold(0.0, f32::max).sqrt();
+        self.cache.fastest = if is_paced { f32::INFINITY } else { fastest };
+        fastest * duration
     }
 
     /// Recomputes the list of awake nodes if it is outdated.

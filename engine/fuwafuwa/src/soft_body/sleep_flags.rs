@@ -40,7 +40,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Records the positions of all nodes, at the start of a tick.
-    pub(crate) fn store_start_positions(&mut self) {
+    pub(crate) fn start_tick(&mut self) {
         let (mesh, before) = (&self.topology.mesh, &mut self.cache.before);
         let both = |(id, &row): (NodeId, &Row)| match mesh.is_alive(id) {
             true => (mesh.node(id).at, row),
@@ -48,6 +48,7 @@ impl<D: Dim> SoftBody<D> {
         };
         before.clear();
         before.extend(self.state.position.entries().map(both));
+        self.cache.fastest = f32::INFINITY;
     }
 
     /// Quarantines each piece that has a node with a non-finite position or velocity, or with a speed above

@@ -55,6 +55,7 @@ impl<D: Dim> TryFrom<StoredWorld<D>> for World<D> {
             inside: stored.inside,
             contacts: Contacts::default(),
             query_cache: QueryCache::default(),
+            slowed: Default::default(),
         };
         world.bodies.iter_mut().for_each(SoftBody::restore);
         world.nearby.keep_known(&world.bodies, &world.rigids);

@@ -92,6 +92,9 @@ pub struct SpherePairs {
     /// Time since the last full search [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     elapsed: f32,
+    /// Duration of the substep [s]: paths last as long at least, so that no fast sphere outruns its path.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    substep: f32,
     /// Time from the last full search to the end of all paths [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     duration: f32,
@@ -125,6 +128,7 @@ impl HashState for SpherePairs {
             is_new_tick: _,
             changed: _,
             elapsed: _,
+            substep: _,
             duration: _,
             reach: _,
             min_slack: _,
@@ -162,15 +166,22 @@ impl SpherePairs {
         self.spare -= distance + self.max_speed * duration;
     }
 
-    /// Updates the spheres and the list of pairs. Returns whether the list changed or a new tick began.
-    pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &SoftBodies<D>) -> bool {
+    /// Updates the spheres and the list of pairs for a substep of `substep` [s]. Returns whether the list changed
+    /// or a new tick began.
+    pub fn follow<D: Dim>(
+        &mut self,
+        spheres: &mut Spheres,
+        bodies: &SoftBodies<D>,
+        substep: f32,
+    ) -> bool {
+        self.substep = substep;
         let is_new_tick = std::mem::take(&mut self.is_new_tick);
         if spheres.awake.is_empty() {
             self.list.clear();
             self.bins = None;
             return is_new_tick;
         }
-        if self.bins.is_none() || self.elapsed > self.duration {
+        if self.bins.is_none() || self.elapsed >= self.duration {
             spheres.move_all(bodies);
             self.find_all(spheres, bodies);
             return true;
@@ -315,6 +326,7 @@ impl SpherePairs {
             true => 2.0 * longest / usual_speed,
             false => MAX_PATH_TIME,
         };
+        self.duration = self.duration.max(self.substep);
         self.max_short_sweep = usual_speed * self.span().half;
     }
 

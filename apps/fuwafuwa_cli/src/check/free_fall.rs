@@ -1,0 +1,84 @@
+//! Free fall: a body in flight moves as a point mass does, at every size and speed.
+
+use super::parallel;
+use crate::report::{Outcome, Progress};
+use anyhow::Result;
+use fuwafuwa::glam::DVec3;
+use fuwafuwa::{
+    Dim, Dim2, Dim3, DimVector, Material, SoftBody, Vec3, Velocity, VoxelGrid, World, WorldConfig,
+};
+
+/// Number of dimensions and voxels across.
+const BODIES: [(usize, usize); 2] = [(2, 32), (3, 12)];
+/// Widths of the bodies [m].
+const WIDTHS: [f32; 4] = [1.0, 0.1, 0.01, 0.0005];
+/// Horizontal speeds at the start [m/s].
+const SPEEDS: [f32; 3] = [1.0, 60.0, 300.0];
+/// Maximum simulated time [s].
+const SECONDS: f32 = 3.0;
+/// Maximum distance that a body flies [widths]. Single precision rounds the positions of nodes beyond.
+const DISTANCE: f32 = 1e5;
+/// Maximum difference of position and velocity from those of a point mass, as a share of the distance and the speed.
+const TOLERANCE: f64 = 0.001;
+
+/// Compares position and velocity with v t + ½ g t² and v + g t.
+pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+    let cases: Vec<_> = { BODIES.iter() }
+        .flat_map(|&body| WIDTHS.map(|width| (body, width)))
+        .flat_map(|(body, width)| SPEEDS.map(|speed| (body, width, speed)))
+        .collect();
+    let found = parallel::each(&cases, progress, |&((dim, n), width, speed)| match dim {
+        2 => worst::<Dim2>(n, width, speed),
+        _ => worst::<Dim3>(n, width, speed),
+    })?;
+    let outcome = |(&((dim, n), width, speed), worst)| {
+        let case = format!(
+            "free fall {dim}D, n = {n}, {} mm wide, {speed} m/s, worst difference",
+            1e3 * width
+        );
+        Outcome::at_most(case, worst, TOLERANCE)
+    };
+    Ok(cases.iter().zip(found).map(outcome).collect())
+}
+
+/// Returns the difference of position and velocity from those of a point mass, as a share of the distance and the
+/// speed; the larger one.
+fn worst<D: Dim>(n: usize, width: f32, speed: f32) -> Result<f64> {
+    let config = WorldConfig::<D>::default();
+    let (gravity, tick) = (config.gravity.to_vec3().as_dvec3(), config.tick);
+    let ticks = (SECONDS.min(DISTANCE * width / speed) / tick).ceil();
+    let mut world = World::<D>::new(config)?;
+    let body = SoftBody::new(VoxelGrid::ball(n, width)?, &[Material::default()])?;
+    let body = world.add_soft_body(body);
+    let linear = D::Vector::from_vec3(Vec3::new(speed, 0.0, 0.0));
+    world.set_velocity(
+        body,
+        Velocity {
+            linear,
+            ..Velocity::default()
+        },
+    )?;
+    let start = super::motion::centre(&world[body]);
+    for _ in 0..ticks as u32 {
+        world.step();
+    }
+    let seconds = f64::from(ticks * tick);
+    let thrown = DVec3::X * f64::from(speed);
+    let path = thrown * seconds + gravity * (0.5 * seconds * seconds);
+    let wanted = thrown + gravity * seconds;
+    let moved = super::motion::centre(&world[body]) - start;
+    let velocity = world[body].momentum().linear / world[body].total_mass();
+    let [position, velocity] = [(moved, path), (velocity, wanted)]
+        .map(|(found, wanted)| (found - wanted).length() / wanted.length());
+    Ok(position.max(velocity))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fast_small_ball_falls_like_a_point() {
+        assert!(worst::<Dim3>(6, 0.01, 60.0).unwrap() < TOLERANCE);
+    }
+}
