@@ -61,6 +61,8 @@ struct Summary {
     crumbs: usize,
     asleep: usize,
     quarantined: usize,
+    /// Impacts that were too fast for the substeps, one per piece and tick.
+    slowed_impacts: usize,
     hash: String,
 }
 
@@ -151,14 +153,14 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
     let mut frames: Vec<Pixmap> = Vec::new();
     let mut failure = None;
     let mut last: Option<World<D>> = None;
-    let (mut released, mut tick) = (0, 0);
+    let (mut released, mut slowed_impacts, mut tick) = (0, 0, 0);
     let recording = Recording::of::<D>(scene, ticks, |world| {
         tick += 1;
         progress.step();
-        let events = world.events().iter();
-        released += events
-            .filter(|event| matches!(event, Event::NodeSplit { .. }))
-            .count();
+        for event in world.events() {
+            released += usize::from(matches!(event, Event::NodeSplit { .. }));
+            slowed_impacts += usize::from(matches!(event, Event::ImpactSlowed { .. }));
+        }
         if arguments.film.is_some() && tick % every == 0 {
             let painted = D::painted(world, scene, arguments.elements);
             match painted.and_then(|painter| Ok(painter.pixels()?)) {
@@ -208,8 +210,14 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         crumbs: pieces().filter(|piece| piece.element_count == 1).count(),
         asleep: pieces().filter(|piece| piece.asleep).count(),
         quarantined: pieces().filter(|piece| piece.quarantined).count(),
+        slowed_impacts,
         hash: format!("{:016x}", world.hash()),
     };
+    if slowed_impacts > 0 {
+        output::warn(format!(
+            "{slowed_impacts} impacts were too fast for the substeps and were slowed; more substeps with --set max_substeps=1024"
+        ));
+    }
     if arguments.json {
         print_json(&summary)?;
     } else {

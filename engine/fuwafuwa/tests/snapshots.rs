@@ -50,6 +50,35 @@ fn push<D: Dim>(world: &mut World<D>, ticks: std::ops::Range<u32>) {
     }
 }
 
+/// An impact is slowed for several ticks, and each of them can be loaded.
+#[test]
+fn loaded_world_continues_fast_impact() {
+    fn check<D: Dim>() {
+        let mut world = World::<D>::new(WorldConfig::default()).unwrap();
+        let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
+        world.add_rigid_body(RigidBody::fixed(floor)).unwrap();
+        let ball = VoxelGrid::ball(12, 0.05).unwrap();
+        let body = SoftBody::new(ball, &[Material::default()]).unwrap();
+        let body = world.add_soft_body(body.translated(vector(0.0, 0.5, 0.0)));
+        let linear = vector(3.0, -60.0, 0.0);
+        let velocity = Velocity {
+            linear,
+            ..Velocity::default()
+        };
+        world.set_velocity(body, velocity).unwrap();
+        let mut slowed = 0;
+        for _ in 0..6 {
+            let mut loaded = load::<D>(&save(&world)).unwrap();
+            slowed += world.step().slowed_impacts;
+            loaded.step();
+            assert_eq!(loaded.hash(), world.hash());
+        }
+        assert!(slowed > 0);
+    }
+    check::<Dim2>();
+    check::<Dim3>();
+}
+
 fn check_resumes<D: Dim>(n: usize) {
     let mut world = torn_world::<D>(n);
     push(&mut world, 0..40);

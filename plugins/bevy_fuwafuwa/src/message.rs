@@ -147,6 +147,18 @@ pub struct WokeUp {
     pub piece: Option<PieceId>,
 }
 
+/// A piece hit something too fast for the substeps, and was slowed while the impact lasts; see
+/// [`Event::ImpactSlowed`](fuwafuwa::Event::ImpactSlowed).
+#[derive(Message, Copy, Clone, Debug, PartialEq)]
+pub struct ImpactSlowed {
+    /// The soft body.
+    pub body: Entity,
+    /// The piece.
+    pub piece: PieceId,
+    /// Smallest share of its velocity by which the piece moved, 0 to 1.
+    pub share: f32,
+}
+
 /// A piece got non-finite positions or velocities and was stopped permanently.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Quarantined {

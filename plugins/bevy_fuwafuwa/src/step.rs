@@ -3,8 +3,8 @@
 use crate::convert::bevy_vector;
 use crate::dimension::Dimension;
 use crate::message::{
-    ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, JointBroke, NodeSplit,
-    PieceDetached, Quarantined, Removed, SensorEntered, SensorExited, WokeUp,
+    ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, ImpactSlowed, JointBroke,
+    NodeSplit, PieceDetached, Quarantined, Removed, SensorEntered, SensorExited, WokeUp,
 };
 use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;
@@ -20,6 +20,7 @@ pub struct Writers<'w> {
     contact_force: MessageWriter<'w, ContactForce>,
     fell_asleep: MessageWriter<'w, FellAsleep>,
     woke_up: MessageWriter<'w, WokeUp>,
+    impact_slowed: MessageWriter<'w, ImpactSlowed>,
     quarantined: MessageWriter<'w, Quarantined>,
     contact_started: MessageWriter<'w, ContactStarted>,
     contact_ended: MessageWriter<'w, ContactEnded>,
@@ -161,6 +162,11 @@ impl Writers<'_> {
             Event::RigidBodyRemoved { body } => {
                 let body = world.entity_of_rigid_body(body)?;
                 self.removed.write(Removed { body, piece: None });
+            }
+            Event::ImpactSlowed { body, piece, share } => {
+                let body = of_body(body)?;
+                self.impact_slowed
+                    .write(ImpactSlowed { body, piece, share });
             }
             Event::Quarantined { body, piece } => {
                 let body = of_body(body)?;

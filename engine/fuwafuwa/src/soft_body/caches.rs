@@ -11,7 +11,7 @@ use crate::topology::changes::History;
 
 /// Data derived from the topology and the state of a body. Snapshots do not contain these data.
 /// `SoftBody::rebuild` recomputes them after loading, except the five last fields: `history` starts empty,
-/// each tick begins by setting `rigid`, `before` and `fastest`, and each substep sets `paces`.
+/// and each tick begins by setting the others.
 #[derive(Clone, Debug, Default)]
 pub struct Cache {
     /// Properties of the body, combined from its materials.

@@ -13,7 +13,7 @@ use crate::soft_body::damping::motions;
 use crate::soft_body::momentum::RigidMotion;
 
 /// Motion of a piece in an impact that is too fast for the substep. The piece moves by a share of its velocity
-/// relative to what it hits, so that every part comes closer by a voxel at most. Velocities do not change, so
+/// relative to what it hits, and its forces act for the same share of the substep. No velocity is lost, so
 /// momentum is exact.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub(crate) struct Pace {
