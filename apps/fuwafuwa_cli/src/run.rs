@@ -215,7 +215,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
     };
     if slowed_impacts > 0 {
         output::warn(format!(
-            "{slowed_impacts} impacts were too fast for the substeps and were slowed; more substeps with --set max_substeps=1024"
+            "{slowed_impacts} impacts were too fast for the substeps and were slowed"
         ));
     }
     if arguments.json {

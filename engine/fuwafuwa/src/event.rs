@@ -109,19 +109,6 @@ pub enum Event<D: Dim> {
         /// Handle of the removed rigid body.
         body: RigidBodyHandle,
     },
-    /// A piece hit something by more than a voxel per substep. While such an impact lasts, the piece moves by
-    /// a share of its velocity relative to what it hits, so that it does not pass through. Momentum is exact,
-    /// but the piece falls behind, and it bounces off slower than with shorter substeps. Two limits remain: soft
-    /// bodies may pass partly through each other, and a kinematic body that moves by more than half its thickness
-    /// per substep may pass through a piece. Sent once per piece and tick.
-    ImpactSlowed {
-        /// Body of the piece.
-        body: SoftBodyHandle,
-        /// Number of the piece.
-        piece: PieceId,
-        /// Smallest share of its velocity by which the piece moved in a substep of the tick, 0 to 1.
-        share: f32,
-    },
     /// A piece became non-finite or too fast. The engine froze the piece permanently, so that it cannot
     /// affect the rest of the world.
     Quarantined {
@@ -129,6 +116,21 @@ pub enum Event<D: Dim> {
         body: SoftBodyHandle,
         /// Number of the quarantined piece.
         piece: PieceId,
+    },
+    /// A piece approached an object by more than a voxel per substep, or by more than half the thickness of
+    /// a thinner rigid body. Until the impact ends, the piece moves by a share of its velocity (relative to a
+    /// rigid body that it hits), and its forces act for the same share of the substep, so that it does not pass
+    /// through. Contacts keep momentum exactly. The piece falls behind a little, and bounces off slower than a real one.
+    ///
+    /// Two limits remain: soft bodies may pass partly through each other, and a kinematic body that moves by more
+    /// than half its thickness per substep may pass through a piece. Sent once per piece and tick.
+    ImpactSlowed {
+        /// Body of the piece.
+        body: SoftBodyHandle,
+        /// Number of the piece.
+        piece: PieceId,
+        /// Smallest ratio of displacement to velocity × substep in this tick, 0 to 1.
+        share: f32,
     },
 }
 
@@ -148,8 +150,8 @@ hash_state! {
         PieceRemoved { body, piece },
         SoftBodyRemoved { body },
         RigidBodyRemoved { body },
-        ImpactSlowed { body, piece, share },
         Quarantined { body, piece },
+        ImpactSlowed { body, piece, share },
     }
 }
 
@@ -214,8 +216,7 @@ pub struct StepReport {
     /// Number of elements that are turned inside out at the end of the tick. Their elastic forces turn them
     /// back.
     pub inverted: u32,
-    /// Number of pieces in impacts of more than a voxel per substep during the tick, see
-    /// [`Event::ImpactSlowed`].
+    /// Number of pieces in impacts that were too fast for the substeps, see [`Event::ImpactSlowed`].
     pub slowed_impacts: u32,
     /// Number of nodes, summed over the substeps, whose speed relative to the rigid motion of their piece was
     /// limited to a voxel per substep. The piece keeps its momentum but loses energy.

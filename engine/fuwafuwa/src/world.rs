@@ -170,7 +170,7 @@ impl<D: Dim> World<D> {
         }
         report.inverted = self.bodies.iter().map(SoftBody::inverted_count).sum();
         self.quarantine(&mut report);
-        self.report_slowed(&mut report);
+        self.end_fast_impacts(&mut report);
         self.sleep();
         self.end_tick();
         report

@@ -104,8 +104,9 @@ pub struct Tints<'a, D: Dim> {
     /// Colour of each material, number 1 first: red, green and blue, 0 to 255 (sRGB). `None` takes the colour
     /// of the palette.
     pub colours: &'a [Option<[u8; 3]>],
-    /// For each body of the world, its voxels by the material numbers that decide the colours. `None`, or a
-    /// grid of another size than the body's, takes the numbers of the body.
+    /// Grids whose material numbers select the colours of the voxels, in the order of
+    /// [`World::soft_bodies`]; remove the entry of a removed body. `None`, or a grid of another size than the
+    /// body's, takes the numbers of the body.
     pub grids: &'a [Option<VoxelGrid<D>>],
 }
 

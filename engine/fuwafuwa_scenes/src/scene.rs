@@ -384,9 +384,9 @@ impl Scene {
         self.material.iter().map(|text| text.colour).collect()
     }
 
-    /// Returns the voxels of each body by the material numbers of the scene, tints included, for renderers.
-    /// In the world itself, a tint has the number of the material from which it differs only in its colour.
-    /// `None` for a body without tints.
+    /// Returns for each body the grid whose material numbers select the colours of its voxels, for renderers. In
+    /// the world itself, a tint has the number of the material from which it differs only in its colour. `None`
+    /// for a body without tints, or with a `state`.
     ///
     /// # Errors
     /// Same errors as [`Scene::build`].

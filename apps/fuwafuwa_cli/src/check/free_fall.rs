@@ -2,13 +2,13 @@
 
 use super::parallel;
 use crate::report::{Outcome, Progress};
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::{
     Dim, Dim2, Dim3, DimVector, Material, SoftBody, Vec3, Velocity, VoxelGrid, World, WorldConfig,
 };
 
-/// Number of dimensions and voxels across.
+/// Bodies: dimensions, voxels across.
 const BODIES: [(usize, usize); 2] = [(2, 32), (3, 12)];
 /// Widths of the bodies [m].
 const WIDTHS: [f32; 4] = [1.0, 0.1, 0.01, 0.0005];
@@ -16,9 +16,9 @@ const WIDTHS: [f32; 4] = [1.0, 0.1, 0.01, 0.0005];
 const SPEEDS: [f32; 3] = [1.0, 60.0, 300.0];
 /// Maximum simulated time [s].
 const SECONDS: f32 = 3.0;
-/// Maximum distance that a body flies [widths]. Single precision rounds the positions of nodes beyond.
+/// Maximum distance that a body flies [widths]. Beyond it, single precision is too coarse.
 const DISTANCE: f32 = 1e5;
-/// Maximum difference of position and velocity from those of a point mass, as a share of the distance and the speed.
+/// Maximum relative error of position and velocity, compared with a point mass.
 const TOLERANCE: f64 = 0.001;
 
 /// Compares position and velocity with v t + ½ g t² and v + g t.
@@ -41,8 +41,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(cases.iter().zip(found).map(outcome).collect())
 }
 
-/// Returns the difference of position and velocity from those of a point mass, as a share of the distance and the
-/// speed; the larger one.
+/// Returns the larger of the relative errors of position and velocity, compared with a point mass.
 fn worst<D: Dim>(n: usize, width: f32, speed: f32) -> Result<f64> {
     let config = WorldConfig::<D>::default();
     let (gravity, tick) = (config.gravity.to_vec3().as_dvec3(), config.tick);
@@ -70,6 +69,10 @@ fn worst<D: Dim>(n: usize, width: f32, speed: f32) -> Result<f64> {
     let velocity = world[body].momentum().linear / world[body].total_mass();
     let [position, velocity] = [(moved, path), (velocity, wanted)]
         .map(|(found, wanted)| (found - wanted).length() / wanted.length());
+    ensure!(
+        position.is_finite() && velocity.is_finite(),
+        "the body left the range"
+    );
     Ok(position.max(velocity))
 }
 

@@ -132,7 +132,8 @@ impl Contacts {
                 let approach = inner::<D>(relative, normal);
                 let share = body.pace_share(body.pieces().of_node(node));
                 let duration = duration * share;
-                let is_close = is_close(gap, approach, size, duration) || share < 1.0 && gap < size;
+                let is_close =
+                    is_close(gap, approach, size, duration) || body.is_fast() && gap < size;
                 if !is_close {
                     pair.impulse.clear();
                     // A contact becomes active below a gap of `CLOSE` voxels. The factor 1.1 allows for

@@ -10,8 +10,8 @@ use crate::soft_body::momentum::RigidMotionF32;
 use crate::topology::changes::History;
 
 /// Data derived from the topology and the state of a body. Snapshots do not contain these data.
-/// `SoftBody::rebuild` recomputes them after loading, except the five last fields: `history` starts empty,
-/// and each tick begins by setting the others.
+/// `SoftBody::rebuild` recomputes them after loading, except the last five fields: `history` starts empty,
+/// each tick begins by setting `rigid`, `before` and `fastest`, and ends by clearing `paces`.
 #[derive(Clone, Debug, Default)]
 pub struct Cache {
     /// Properties of the body, combined from its materials.
@@ -38,6 +38,6 @@ pub struct Cache {
     pub before: Vec<(Point, Row)>,
     /// Highest speed at which a node moved in the last substep [m/s]; infinite at the start of a tick.
     pub fastest: f32,
-    /// Paces of the pieces in a fast impact; empty if there are none.
+    /// Paces of the pieces; empty if the body is not fast.
     pub paces: Vec<Pace>,
 }

@@ -1,9 +1,10 @@
 //! Motion by more than a voxel per substep.
 //!
-//! The rigid motion of a piece has no limit. Two things would go wrong at more than a voxel per substep, and
-//! are limited here. Nodes that move that fast relative to their piece would turn elements inside out: their
-//! speed is reduced, and the piece keeps its momentum. Nodes that hit something that fast would flatten the
-//! piece at once: the piece has a [`Pace`] while the impact lasts.
+//! The velocity of a piece has no limit below that of the quarantine. Two things would go wrong, and are limited
+//! here. Nodes faster than a voxel per substep relative to their piece would turn elements inside out: their speed
+//! is reduced, and the piece keeps its momentum. Nodes that approach an object by more than a voxel per substep
+//! would flatten the piece at once: the piece has a [`Pace`] while the impact lasts. Turns have a limit, too,
+//! because nodes move along straight lines.
 
 use super::SoftBody;
 use crate::foundation::dim::{Dim, inner};
@@ -12,6 +13,10 @@ use crate::math::row::Row;
 use crate::soft_body::damping::motions;
 use crate::soft_body::momentum::RigidMotion;
 
+/// Maximum turn of a piece per substep [rad]. Nodes move along straight lines, so a turn of this size makes the piece
+/// wider by 3 %, and the elastic forces pull it back.
+const MAX_TURN: f32 = 0.25;
+
 /// Motion of a piece in an impact that is too fast for the substep. The piece moves by a share of its velocity
 /// relative to what it hits, and its forces act for the same share of the substep. No velocity is lost, so
 /// momentum is exact.
@@ -19,7 +24,7 @@ use crate::soft_body::momentum::RigidMotion;
 pub(crate) struct Pace {
     /// Share of the relative velocity by which the piece moves, above 0 to 1.
     pub share: f32,
-    /// Velocity of what the piece hits [m/s].
+    /// Velocity of the rigid body that the piece hits [m/s]; 0 if the piece hits another piece.
     pub frame: Row,
 }
 
@@ -33,7 +38,7 @@ impl Default for Pace {
 }
 
 impl Pace {
-    /// Returns the velocity with which a node moves [m/s], given its own.
+    /// Returns the velocity at which a node with `velocity` is moved [m/s].
     #[inline(always)]
     pub fn of(&self, velocity: Row) -> Row {
         self.frame + (velocity - self.frame) * self.share
@@ -42,7 +47,7 @@ impl Pace {
 
 impl<D: Dim> SoftBody<D> {
     /// Returns the highest speed of an awake node [m/s], or 0 if no node moved at half of `limit` [m/s] in the last
-    /// substep: forces hardly ever double a speed in a substep, and then the next one limits it.
+    /// substep. Forces rarely double a speed in one substep; if they do, the next substep limits it.
     pub(crate) fn fastest_node(&self, limit: f32) -> f32 {
         if 2.0 * self.cache.fastest <= limit {
             return 0.0;
@@ -77,33 +82,53 @@ impl<D: Dim> SoftBody<D> {
             .map_or(1.0, |pace| pace.share)
     }
 
+    /// Returns whether a node is fast enough for an impact of more than a voxel per substep. Then contacts of all
+    /// near nodes are active, because other contacts may push a node at such a speed.
+    #[inline(always)]
+    pub(crate) fn is_fast(&self) -> bool {
+        !self.cache.paces.is_empty()
+    }
+
+    /// Marks the body as fast.
+    pub(crate) fn mark_fast(&mut self) {
+        let count = self.topology.pieces.list.len();
+        self.cache.paces.resize(count, Pace::default());
+    }
+
     /// Ends all fast impacts.
     pub(crate) fn clear_paces(&mut self) {
         self.cache.paces.clear();
     }
 
-    /// Slows a piece in a fast impact, if it is not slower already.
+    /// Sets the pace of a piece, unless the piece already has a smaller share.
     pub(crate) fn slow_down(&mut self, piece: PieceId, pace: Pace) {
-        let count = self.topology.pieces.list.len();
-        self.cache.paces.resize(count, Pace::default());
+        self.mark_fast();
         let own = &mut self.cache.paces[piece.index()];
         if pace.share < own.share {
             *own = pace;
         }
     }
 
-    /// Limits the speed of nodes relative to the rigid motion of their piece to `limit` [m/s], except in fast
-    /// impacts. The momentum of each piece stays the same, unless it has fixed nodes. Returns the number of
-    /// nodes that were too fast.
+    /// Limits the speed of nodes relative to the rigid motion of their piece to `limit` [m/s], a voxel per
+    /// substep. The momentum of each piece stays the same, unless it has fixed nodes or turns by more than
+    /// [`MAX_TURN`] per substep. Returns the number of nodes that were too fast.
     pub(crate) fn limit_deformation(&mut self, limit: f32) -> u32 {
-        let rigid: Vec<RigidMotion> = motions(self).iter().map(|motion| motion.rigid()).collect();
+        let max_spin = MAX_TURN * limit / self.topology.grid.voxel_size();
+        let rigid = motions(self)
+            .iter()
+            .map(|motion| {
+                let rigid = motion.rigid();
+                let spin = rigid.velocity().angular.length();
+                rigid.times(1.0, f64::from((max_spin / spin.max(max_spin)).min(1.0)))
+            })
+            .collect::<Vec<RigidMotion>>();
         self.cache.rigid = rigid
             .iter()
             .map(RigidMotion::roughly)
             .collect::<Vec<_>>()
             .into();
         let mut limited: IndexVec<PieceId, u32> = vec![0; rigid.len()].into();
-        // In a fast impact, nodes at rest on what the piece hits are as fast as that relative to the piece.
+        // Nodes at rest on the hit object move at the closing speed relative to the piece.
         let limits = rigid.iter().enumerate().map(|(piece, rigid)| {
             let pace = self.cache.paces.get(piece).filter(|pace| pace.share < 1.0);
             let whole = Row::from(rigid.velocity().linear);

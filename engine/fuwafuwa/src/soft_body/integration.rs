@@ -48,6 +48,7 @@ impl<D: Dim> SoftBody<D> {
     /// Adds to velocities the change that an acceleration field [m/s²] causes in `duration` [s].
     pub(crate) fn apply_field(&mut self, duration: f32, field: &dyn Fn(D::Vector) -> D::Vector) {
         for &id in &self.cache.awake {
+            let duration = duration * self.pace_share(self.topology.pieces.of_node(id));
             let point = D::Vector::from_vec3(self.state.position[id].xyz());
             let acceleration = Row::from(field(point).to_vec3());
             if self.state.inverse_mass[id] > 0.0 && acceleration.is_finite() {
@@ -85,8 +86,8 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Moves every awake node by its velocity for `duration` [s]; in a fast impact by the share that its
-    /// [`Pace`] allows. Also extrapolates the positions by `lead` [s], for the next evaluation of forces. The
+    /// Moves every awake node by its velocity for `duration` [s]; during a fast impact, by the share in its
+    /// [`Pace`]. Also extrapolates the positions by `lead` [s], for the next evaluation of forces. The
     /// extrapolation uses velocities relative to the rigid motion of the piece, so that pure rotation is not
     /// damped. Returns the distance that the fastest node has moved [m].
     pub(crate) fn move_nodes(&mut self, duration: f32, lead: f32) -> f32 {

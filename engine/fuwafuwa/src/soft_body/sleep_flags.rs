@@ -39,7 +39,7 @@ impl<D: Dim> SoftBody<D> {
         self.cache.awake_is_stale = true;
     }
 
-    /// Starts a tick: records the positions of all nodes, and ends what caches know of the last substep.
+    /// Starts a tick: records the positions of all nodes.
     pub(crate) fn start_tick(&mut self) {
         let (mesh, before) = (&self.topology.mesh, &mut self.cache.before);
         let both = |(id, &row): (NodeId, &Row)| match mesh.is_alive(id) {
@@ -49,7 +49,6 @@ impl<D: Dim> SoftBody<D> {
         before.clear();
         before.extend(self.state.position.entries().map(both));
         self.cache.fastest = f32::INFINITY;
-        self.cache.paces.clear();
     }
 
     /// Quarantines each piece that has a node with a non-finite position or velocity, or with a speed above

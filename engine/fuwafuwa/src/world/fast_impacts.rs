@@ -12,21 +12,21 @@ use crate::soft_body::SoftBodies;
 use crate::soft_body::fast_motion::Pace;
 use std::collections::BTreeMap;
 
-/// Maximum distance by which a piece and what it hits come closer in a substep [voxels]. If a rigid body is
-/// thinner, the limit is half its thickness: with half a voxel, nodes of a 3D body of 16 voxels pass through a
-/// plate of a third of a voxel at 30 m/s. At a whole voxel, so do those of a 2D body through two thirds.
-const MAX_CLOSING: f32 = 0.5;
+/// Maximum approach of a piece and what it hits, per substep [voxels]. The limit for a thinner rigid body is half
+/// its thickness, else nodes pass through plates thinner than a voxel.
+const MAX_CLOSING: f32 = 1.0;
 
 /// Pieces in fast impacts in a tick, with the smallest share of their velocity by which they moved.
 pub(super) type SlowedPieces = BTreeMap<(BodySlot, PieceId), f32>;
 
 impl<D: Dim> World<D> {
     /// Slows the pieces in impacts that are too fast for a substep of `duration` [s], and limits the
-    /// deformation of the other fast ones.
+    /// deformation of fast pieces.
     pub(super) fn limit_fast_motion(&mut self, duration: f32, report: &mut StepReport) {
         self.bodies.iter_mut().for_each(|body| body.clear_paces());
         let voxels = self.bodies.iter().map(|body| body.grid().voxel_size());
-        let thinnest = self.rigids.iter().map(|rigid| rigid.shape().inner_radius());
+        let solid = self.rigids.iter().filter(|rigid| !rigid.is_sensor);
+        let thinnest = solid.map(|rigid| rigid.shape().inner_radius());
         let room = voxels.map(|voxel| MAX_CLOSING * voxel).chain(thinnest);
         let limit = room.fold(f32::INFINITY, f32::min) / duration;
         let rigids = self.rigids.iter().map(|rigid| rigid.top_speed());
@@ -40,9 +40,15 @@ impl<D: Dim> World<D> {
         {
             return;
         }
+        for &(slot, _) in fastest.iter().filter(|(_, speed)| *speed > limit) {
+            self.bodies.at_mut(slot).mark_fast();
+        }
         let mut slowed = node_impacts(&self.nearby, &self.bodies, &self.rigids, duration);
         slowed.extend(sphere_impacts(&self.nearby, &self.bodies, duration));
         for (body, piece, pace) in slowed {
+            if self.bodies.at(body).pieces().list[piece].asleep {
+                continue;
+            }
             self.bodies.at_mut(body).slow_down(piece, pace);
             let least = self.slowed.entry((body, piece)).or_insert(1.0);
             *least = least.min(pace.share);
@@ -56,8 +62,9 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Reports the impacts of the tick that were too fast for its substeps.
-    pub(super) fn report_slowed(&mut self, report: &mut StepReport) {
+    /// Ends the fast impacts of the tick, and reports them.
+    pub(super) fn end_fast_impacts(&mut self, report: &mut StepReport) {
+        self.bodies.iter_mut().for_each(|body| body.clear_paces());
         for ((body, piece), share) in std::mem::take(&mut self.slowed) {
             report.slowed_impacts += 1;
             self.events.push(Event::ImpactSlowed {
@@ -105,22 +112,34 @@ fn sphere_impacts<D: Dim>(
     for pair in &nearby.pairs.list {
         let [a, b] = pair.spheres;
         let both = pair.both(&spheres.list);
-        let touching = both[0].radius + both[1].radius;
-        let [first, second] =
-            both.map(|sphere| sphere.mean::<D>(bodies.at(sphere.body).velocities()));
-        let relative = first - second;
-        if is_within::<D>(relative * duration, MAX_CLOSING * touching) {
+        let [own, other] = both.map(|sphere| bodies.at(sphere.body).layers());
+        if !own.meet(other) || nearby.embedded.is_inside(pair.spheres, both) {
             continue;
         }
-        let apart = spheres.centres[a] - spheres.centres[b];
+        let is_one_piece = (both[0].body, both[0].piece) == (both[1].body, both[1].piece);
+        let least = MAX_CLOSING * (both[0].radius + both[1].radius);
+        let velocities = pair.spheres.map(|sphere| spheres.velocities[sphere]);
+        let is_slow = velocities.map(|velocity| is_within::<D>(velocity * duration, least));
+        if is_slow == [true; 2] || is_one_piece {
+            continue;
+        }
+        let (apart, relative) = (
+            spheres.centres[a] - spheres.centres[b],
+            velocities[0] - velocities[1],
+        );
         let distance = inner::<D>(apart, apart).sqrt().max(1e-9);
         let closing = -inner::<D>(relative, apart) / distance * duration;
-        if let Some(share) = share(closing, distance - touching, MAX_CLOSING * touching) {
-            let pace = Pace {
-                share,
-                frame: Row::ZERO,
-            };
-            paces.extend(both.map(|sphere| (sphere.body, sphere.piece, pace)));
+        let gap = distance - (both[0].radius + both[1].radius);
+        if let Some(share) = share(closing, gap, least) {
+            // A frame that moves with the other piece would push nodes at rest on a floor into the floor.
+            let frame = Row::ZERO;
+            let slowed = both
+                .into_iter()
+                .zip(is_slow)
+                .filter(|(_, is_slow)| !is_slow);
+            paces.extend(
+                slowed.map(|(sphere, _)| (sphere.body, sphere.piece, Pace { share, frame })),
+            );
         }
     }
     paces
@@ -131,8 +150,8 @@ fn is_within<D: Dim>(motion: Row, length: f32) -> bool {
     inner::<D>(motion, motion) <= length * length
 }
 
-/// Returns the share of a `closing` motion that keeps it within the `gap` or `least` [m], whichever is larger.
-/// `None` if the whole motion does.
+/// Returns the share of a `closing` motion that fits into the larger of `gap` and `least` [m]; `None` if all of it
+/// fits.
 fn share(closing: f32, gap: f32, least: f32) -> Option<f32> {
     let room = gap.max(least);
     (closing > room).then(|| room / closing)

@@ -18,13 +18,15 @@ const THICKENED: [(f64, f64); 2] = [(0.375, 0.8), (0.75, 0.4)];
 /// Share of the edge of a picture along which something lies that is not part of the drawing, such as a table
 /// below the paper.
 const SURROUNDING: f64 = 0.2;
-/// Maximum ratio of the sides of a wedge: what a photo of slightly turned paper shows of the table at each side.
-const WEDGE: f64 = 0.25;
-/// Minimum share of the length of a wedge that lies at the edge of the picture.
-const WEDGE_AT_EDGE: f64 = 0.8;
 /// Minimum thickness of such surroundings, in widths of the pen of the drawing. What is thinner is an outline to
 /// which the picture was cropped.
 const THICK: f64 = 2.0;
+/// Maximum ratio of width to length of a wedge: a strip of the table at an edge, visible because the paper is turned.
+const WEDGE: f64 = 0.25;
+/// Minimum share of the length of a wedge that lies at the edge of the picture.
+const WEDGE_AT_EDGE: f64 = 0.8;
+/// Maximum share of the box around a wedge that the wedge covers. A straight line along the edge covers more.
+const WEDGE_AREA: f64 = 0.75;
 /// Maximum width of a pen, as a share of the longer side of a picture. Wider strokes are filled shapes.
 const WIDEST_PEN: f64 = 0.02;
 /// Minimum size of a drawing on such paper, as a share of the picture's area.
@@ -34,7 +36,7 @@ const LEAST_DRAWING: f64 = 0.02;
 pub(super) struct Solid {
     /// Solid pixels, trimmed. The mask has no pixel if the drawing has none.
     pub mask: Mask,
-    /// Ink and what it encloses, before strokes were thickened; of the size of `mask`.
+    /// Ink and enclosed paper, before thickening; same size as `mask`.
     filled: Mask,
     /// Number of pixels of the picture along a pixel of `mask`.
     factor: usize,
@@ -45,8 +47,8 @@ pub(super) struct Solid {
 }
 
 impl Solid {
-    /// Returns the colours of the solid pixels. A pixel with ink has the mean colour of its ink. What was
-    /// thickened has no colour of its own.
+    /// Returns the colours of the solid pixels. A pixel with ink has the mean colour of its ink. Pixels
+    /// added by thickening have no colour.
     pub fn samples(&self, drawing: &Drawing) -> Samples {
         let [width, _] = self.mask.size;
         let pixels = self.filled.on.iter().enumerate().map(|(at, &is_filled)| {
@@ -126,7 +128,7 @@ fn without_surroundings(ink: &Mask) -> (Mask, usize) {
     let (wedges, at_edge) = wedges.fold((0, 0), |(count, sum), wedge| {
         (count + 1, sum + wedge.at_edge)
     });
-    // A single one may be the ground of the drawing.
+    // A single wedge may be the ground in the drawing.
     let has_wedges = wedges > 1 && is_much(at_edge);
     let is_along_edge =
         |component: &Component| is_much(component.at_edge) || has_wedges && is_wedge(component);
@@ -161,7 +163,8 @@ fn is_wedge(component: &Component) -> bool {
     let [columns, rows] = &component.extent;
     let long = longer(&component.extent) as f64;
     let short = columns.len().min(rows.len()) as f64;
-    short < WEDGE * long && component.at_edge as f64 >= WEDGE_AT_EDGE * long
+    let is_tapered = component.area as f64 <= WEDGE_AREA * short * long;
+    is_tapered && short < WEDGE * long && component.at_edge as f64 >= WEDGE_AT_EDGE * long
 }
 
 /// Removes specks. Returns the number of specks.

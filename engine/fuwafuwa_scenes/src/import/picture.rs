@@ -170,12 +170,11 @@ impl Picture {
     /// Imports the picture like [`Picture::import`], and keeps its colours: material number `n` of the voxels
     /// has the tint at index `n − 1` of the second result, as red, green and blue.
     ///
-    /// There are at most six tints, the most frequent first. Shades of a colour are one tint. Paper is one
-    /// tint where it is solid, as if it were white in full light, and lines remain visible from about a
-    /// quarter of a voxel. All tints are mixed with a little of the colour of skin.
+    /// There are at most six tints, the most frequent first. Shades of a colour are one tint. Solid paper
+    /// is one tint, as white as in full light. Lines remain visible from about a quarter of a voxel. All tints are mixed with a little of the colour of skin.
     ///
-    /// The list is empty, and all solid voxels have material 1, if everything solid has the one dark colour
-    /// of a pen. If the options name colours, they decide the materials, and the list is empty, too.
+    /// If all solid pixels have one dark pen colour, the list is empty and their material is 1. The list is also
+    /// empty if the options name colours, which then decide the materials.
     ///
     /// # Errors
     /// Same errors as [`Picture::import`].

@@ -5,9 +5,9 @@ use fuwafuwa::{Dim2, VoxelGrid};
 
 /// Maximum number of tints of a picture.
 pub(super) const MAX_TINTS: usize = 6;
-/// Weight of ink; that of paper inside an outline is 1. So lines narrower than a voxel stay visible.
+/// Weight of an ink pixel; enclosed paper has 1. Keeps thin lines visible.
 pub(super) const INK_WEIGHT: u8 = 3;
-/// Share of all weights below which a colour is no tint of its own, as its reciprocal.
+/// A tint needs at least 1 / `LEAST_SHARE` of the total weight.
 const LEAST_SHARE: u64 = 200;
 /// Squared distance of colours up to which they are shades of one tint.
 const SHADES: u32 = 20_000;
@@ -15,13 +15,13 @@ const SHADES: u32 = 20_000;
 const APART: u32 = 30_000;
 /// Squared distance up to which two tints are one.
 const SAME: u32 = 2_000;
-/// Number of pixels per voxel from which blurred edges are sharpened, by the number of rounds.
+/// Number of pixels per voxel that each round of sharpening blurred edges requires.
 const SHARPENED: [usize; 2] = [3, 6];
 /// Minimum difference of brightness across an edge that is sharpened, as in [`brightness`].
 const EDGE: u32 = 400;
-/// Brightness and range of the channels below which a colour is that of a pen, not of a crayon.
+/// Maximum brightness and range of the channels of a pen. Brighter or more coloured ink is a crayon.
 const PEN: (u32, u8) = (1050, 50);
-/// Colour of light skin, and the part of a tint that it replaces, in percent. Pure colours would look harsh
+/// Colour of light skin that is mixed into each tint, and its share in percent. Pure colours would look harsh
 /// beside the other bodies.
 const SKIN: ([u8; 3], u32) = ([255, 226, 206], 16);
 
@@ -49,7 +49,7 @@ pub(super) struct Tinted {
 /// one dark colour of a pen.
 pub(super) fn tinted(grid: &VoxelGrid<Dim2>, samples: Samples) -> Option<Tinted> {
     let samples = samples.sharpened(grid);
-    let found = found(&samples);
+    let found = frequent_colours(&samples);
     let [columns, rows, _] = grid.size().map(|extent| extent as usize);
     let votes = samples.votes(&found, [columns, rows]);
     let mut numbers = Vec::with_capacity(columns * rows);
@@ -180,8 +180,8 @@ impl Bin {
     }
 }
 
-/// Returns the most frequent colours, each with its shades, most frequent first.
-fn found(samples: &Samples) -> Vec<[u8; 3]> {
+/// Returns the most frequent colours, each the mean of its shades, most frequent first.
+fn frequent_colours(samples: &Samples) -> Vec<[u8; 3]> {
     let mut bins = vec![Bin::default(); 1 << 12];
     for sample in samples.pixels.iter().flatten() {
         let [red, green, blue] = sample.colour.map(|channel| usize::from(channel >> 4));
@@ -191,14 +191,17 @@ fn found(samples: &Samples) -> Vec<[u8; 3]> {
             sums: sample.colour.map(|channel| u64::from(channel) * weight),
         });
     }
-    bins.retain(|bin| bin.weight > 0);
-    let all: u64 = bins.iter().map(|bin| bin.weight).sum();
+    let filled = bins.into_iter().filter(|bin| bin.weight > 0);
+    let mut bins: Vec<(Bin, [u8; 3])> = filled.map(|bin| (bin, bin.mean())).collect();
+    let all: u64 = bins.iter().map(|(bin, _)| bin.weight).sum();
     let mut tints = Vec::new();
     while tints.len() < MAX_TINTS {
-        let shades = |of: &Bin| {
+        let shades = |&(_, of): &(Bin, [u8; 3])| {
             let mut sum = Bin::default();
-            let near = |bin: &&Bin| distance(bin.mean(), of.mean()) <= SHADES;
-            bins.iter().filter(near).for_each(|bin| sum.add(bin));
+            let near = bins
+                .iter()
+                .filter(|&&(_, mean)| distance(mean, of) <= SHADES);
+            near.for_each(|(bin, _)| sum.add(bin));
             sum
         };
         let best =
@@ -211,11 +214,11 @@ fn found(samples: &Samples) -> Vec<[u8; 3]> {
             break;
         };
         let tint = best.mean();
-        // Colours this close would be equal in the file. Their pixels belong to the tint found before.
+        // Pixels of a colour this close vote for the tint found before.
         if tints.iter().all(|&known| distance(known, tint) > SAME) {
             tints.push(tint);
         }
-        bins.retain(|bin| distance(bin.mean(), tint) > APART);
+        bins.retain(|&(_, mean)| distance(mean, tint) > APART);
     }
     tints
 }

@@ -63,8 +63,8 @@ impl Budget {
         self.check_solid(solid, "file", &more)
     }
 
-    /// Checks that `solid` more solid voxels are within the limit of the scene. An error of `field` ends with
-    /// `more`.
+    /// Checks that `solid` more solid voxels are within the limit of the scene. `more` is appended to
+    /// the error, which names `field`.
     fn check_solid(&self, solid: usize, field: &str, more: &str) -> Result<(), FieldError> {
         let (most, found) = (self.most_solid, self.solid.saturating_add(solid));
         let expected = format!(
