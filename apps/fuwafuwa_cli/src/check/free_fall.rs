@@ -16,7 +16,7 @@ const WIDTHS: [f32; 4] = [1.0, 0.1, 0.01, 0.0005];
 const SPEEDS: [f32; 3] = [1.0, 60.0, 300.0];
 /// Maximum simulated time [s].
 const SECONDS: f32 = 3.0;
-/// Maximum distance that a body flies [widths]. Beyond it, single precision is too coarse.
+/// Maximum distance that a body flies, in widths. Beyond it, single precision is too coarse.
 const DISTANCE: f32 = 1e5;
 /// Maximum relative error of position and velocity, compared with a point mass.
 const TOLERANCE: f64 = 0.001;

@@ -88,7 +88,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
 #[derive(Copy, Clone, Debug, Default)]
 struct Impact {
     /// Largest distance by which a node was beyond the surface of the plate [m], or by which the centres of two
-    /// bodies came closer than side by side [widths].
+    /// bodies came closer than side by side, in widths.
     entered: f64,
     /// Whether the body moves by more than the limit of an impact per substep.
     is_fast: bool,
