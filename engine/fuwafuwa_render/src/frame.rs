@@ -61,11 +61,7 @@ impl<'a, C: DimCamera> Frame<'a, C> {
 
     /// Returns the colour of a material number.
     pub(crate) fn colour(&self, number: u8) -> Colour {
-        let index = usize::from(number).wrapping_sub(1);
-        match self.tints.colours.get(index) {
-            Some(Some(colour)) => colour.map(|channel| f32::from(channel) / 255.0),
-            _ => self.palette.material(number),
-        }
+        self.palette.tinted_material(number, self.tints.colours)
     }
 
     /// Returns the colours of all material numbers, number 1 first.

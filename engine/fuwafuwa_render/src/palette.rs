@@ -87,6 +87,15 @@ impl Palette {
         among(&self.materials, usize::from(number.max(1)) - 1)
     }
 
+    /// Returns the colour of a material number: that of the scene if `own` has one, number 1 first, otherwise that
+    /// of the palette. Scenes give red, green and blue, 0 to 255 (sRGB).
+    pub fn tinted_material(&self, number: u8, own: &[Option<[u8; 3]>]) -> Colour {
+        match own.get(usize::from(number).wrapping_sub(1)) {
+            Some(Some(colour)) => colour.map(|channel| f32::from(channel) / 255.0),
+            _ => self.material(number),
+        }
+    }
+
     /// Returns the colour of a player's hand.
     pub fn hand(&self, player: usize) -> Colour {
         among(&self.hands, player)

@@ -14,11 +14,15 @@ fn drawing([width, height]: [u32; 2], is_black: impl Fn(f32, f32) -> bool) -> Ve
             pixels.push(if is_black { 0 } else { 255 });
         }
     }
+    encoded([width, height], png::ColorType::Grayscale, &pixels)
+}
+
+fn encoded([width, height]: [u32; 2], colour: png::ColorType, pixels: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_color(colour);
     let mut writer = encoder.write_header().unwrap();
-    writer.write_image_data(&pixels).unwrap();
+    writer.write_image_data(pixels).unwrap();
     writer.finish().unwrap();
     bytes
 }
@@ -129,13 +133,7 @@ fn coloured_drawing() -> Vec<u8> {
             _ => [255; 3],
         });
     }
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 300, 300);
-    encoder.set_color(png::ColorType::Rgb);
-    let mut writer = encoder.write_header().unwrap();
-    writer.write_image_data(&pixels).unwrap();
-    writer.finish().unwrap();
-    bytes
+    encoded([300; 2], png::ColorType::Rgb, &pixels)
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! Free fall: a body in flight moves as a point mass does, at every size and speed.
 
+use super::motion::{centre, throw};
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, DimVector, Material, SoftBody, Vec3, Velocity, VoxelGrid, World, WorldConfig,
+    Dim, Dim2, Dim3, DimVector, Material, SoftBody, Vec3, VoxelGrid, World, WorldConfig,
 };
 
 /// Bodies: dimensions, voxels across.
@@ -50,14 +51,8 @@ fn worst<D: Dim>(n: usize, width: f32, speed: f32) -> Result<f64> {
     let body = SoftBody::new(VoxelGrid::ball(n, width)?, &[Material::default()])?;
     let body = world.add_soft_body(body);
     let linear = D::Vector::from_vec3(Vec3::new(speed, 0.0, 0.0));
-    world.set_velocity(
-        body,
-        Velocity {
-            linear,
-            ..Velocity::default()
-        },
-    )?;
-    let start = super::motion::centre(&world[body]);
+    throw(&mut world, body, linear)?;
+    let start = centre(&world[body]);
     for _ in 0..ticks as u32 {
         world.step();
     }
@@ -65,7 +60,7 @@ fn worst<D: Dim>(n: usize, width: f32, speed: f32) -> Result<f64> {
     let thrown = DVec3::X * f64::from(speed);
     let path = thrown * seconds + gravity * (0.5 * seconds * seconds);
     let wanted = thrown + gravity * seconds;
-    let moved = super::motion::centre(&world[body]) - start;
+    let moved = centre(&world[body]) - start;
     let velocity = world[body].momentum().linear / world[body].total_mass();
     let [position, velocity] = [(moved, path), (velocity, wanted)]
         .map(|(found, wanted)| (found - wanted).length() / wanted.length());

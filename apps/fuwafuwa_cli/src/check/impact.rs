@@ -1,14 +1,14 @@
 //! Impacts of many voxels per substep: no body passes through a plate, contacts keep momentum, and
 //! an event reports each slowed impact. A pin on a fast carrier holds.
 
-use super::motion::{centre, material};
+use super::motion::{centre, material, throw};
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Context, Result, ensure};
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::{
     Dim, Dim2, Dim3, DimVector, Event, Joint, JointAnchor, Material, RigidBody, Shape, SoftBody,
-    SoftBodyHandle, Vec3, Velocity, VoxelGrid, World, WorldConfig,
+    SoftBodyHandle, Vec3, VoxelGrid, World, WorldConfig,
 };
 
 /// Bodies: number of dimensions, voxels across, and width [m].
@@ -130,14 +130,7 @@ fn add_ball<D: Dim>(
     let body = world.add_soft_body(SoftBody::new(VoxelGrid::ball(n, width)?, &[material()])?);
     let at = centre(&world[body]).as_vec3();
     world.translate(body, vector::<D>(x, y, 0.0) - D::Vector::from_vec3(at))?;
-    let linear = vector::<D>(0.0, speed, 0.0);
-    world.set_velocity(
-        body,
-        Velocity {
-            linear,
-            ..Velocity::default()
-        },
-    )?;
+    throw(world, body, vector::<D>(0.0, speed, 0.0))?;
     Ok(body)
 }
 

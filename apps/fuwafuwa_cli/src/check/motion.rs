@@ -3,7 +3,10 @@
 use anyhow::Result;
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::{Dim, DimVector, Grading, Law, Material, NodeId, SoftBody, Vec3, VoxelGrid};
+use fuwafuwa::{
+    Dim, DimVector, Grading, Law, Material, NodeId, SoftBody, SoftBodyHandle, Vec3, Velocity,
+    VoxelGrid, World,
+};
 
 /// Returns a soft material without damping that does not tear.
 pub fn material() -> Material {
@@ -63,4 +66,13 @@ pub fn centre<D: Dim>(body: &SoftBody<D>) -> DVec3 {
     let states = body.mesh().nodes().map(|(id, _)| body.node_state(id));
     let moments = states.map(|(at, _, mass)| at.to_vec3().as_dvec3() * f64::from(mass));
     moments.sum::<DVec3>() / body.total_mass()
+}
+
+/// Gives a body a velocity [m/s].
+pub fn throw<D: Dim>(world: &mut World<D>, body: SoftBodyHandle, linear: D::Vector) -> Result<()> {
+    let velocity = Velocity {
+        linear,
+        ..Velocity::default()
+    };
+    Ok(world.set_velocity(body, velocity)?)
 }

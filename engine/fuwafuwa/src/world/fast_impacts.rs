@@ -112,15 +112,16 @@ fn sphere_impacts<D: Dim>(
     for pair in &nearby.pairs.list {
         let [a, b] = pair.spheres;
         let both = pair.both(&spheres.list);
-        let [own, other] = both.map(|sphere| bodies.at(sphere.body).layers());
-        if !own.meet(other) || nearby.embedded.is_inside(pair.spheres, both) {
-            continue;
-        }
-        let is_one_piece = (both[0].body, both[0].piece) == (both[1].body, both[1].piece);
-        let least = MAX_CLOSING * (both[0].radius + both[1].radius);
+        let touching = both[0].radius + both[1].radius;
+        let least = MAX_CLOSING * touching;
         let velocities = pair.spheres.map(|sphere| spheres.velocities[sphere]);
         let is_slow = velocities.map(|velocity| is_within::<D>(velocity * duration, least));
+        let is_one_piece = (both[0].body, both[0].piece) == (both[1].body, both[1].piece);
         if is_slow == [true; 2] || is_one_piece {
+            continue;
+        }
+        let [own, other] = both.map(|sphere| bodies.at(sphere.body).layers());
+        if !own.meet(other) || nearby.embedded.is_inside(pair.spheres, both) {
             continue;
         }
         let (apart, relative) = (
@@ -129,8 +130,7 @@ fn sphere_impacts<D: Dim>(
         );
         let distance = inner::<D>(apart, apart).sqrt().max(1e-9);
         let closing = -inner::<D>(relative, apart) / distance * duration;
-        let gap = distance - (both[0].radius + both[1].radius);
-        if let Some(share) = share(closing, gap, least) {
+        if let Some(share) = share(closing, distance - touching, least) {
             // A frame that moves with the other piece would push nodes at rest on a floor into the floor.
             let frame = Row::ZERO;
             let slowed = both

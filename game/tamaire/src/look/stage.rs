@@ -217,11 +217,7 @@ fn shown<'a>(look: &DrawOptions, ages: &'a Ages) -> fuwafuwa_render::Look<'a> {
 fn particles(look: &DrawOptions, level: &Level) -> Vec<Particle> {
     let world = &look.theme.world;
     let specks = look.effects.specks.iter().map(|speck| {
-        let index = usize::from(speck.material).wrapping_sub(1);
-        let own = match level.colours().get(index) {
-            Some(Some(colour)) => colour.map(|channel| f32::from(channel) / 255.0),
-            _ => world.material(speck.material),
-        };
+        let own = world.tinted_material(speck.material, level.colours());
         // Particles of fresh material get the same share of the fresh colour as torn surfaces.
         let share = if speck.is_fresh { 0.7 } else { 0.0 };
         let [red, green, blue] = [0, 1, 2].map(|k| own[k] + share * (world.fresh[k] - own[k]));
