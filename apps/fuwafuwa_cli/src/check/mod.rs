@@ -3,6 +3,7 @@
 mod beam;
 mod doughnut;
 mod energy;
+mod heap;
 mod momentum;
 mod motion;
 mod parallel;
@@ -11,6 +12,8 @@ mod period;
 mod pile;
 mod random;
 mod sag;
+mod slope;
+mod slow;
 mod spin;
 mod stack;
 mod statics;
@@ -53,6 +56,12 @@ enum Which {
     Pile,
     /// A stack of bodies must stand still.
     Stack,
+    /// Heaps of balls and cubes must fall asleep and stay asleep.
+    Heap,
+    /// Bodies that sag, float or slide slowly must not be stopped.
+    Slow,
+    /// Blocks on inclined planes must slide as Coulomb's law says, or rest.
+    Slope,
     /// A ring squeezed shut must not pass through itself.
     Doughnut,
     /// All checks.
@@ -63,7 +72,7 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 10] = [
+    let checks: [(Which, Check); 13] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
@@ -73,6 +82,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         (Which::Tear, tear::check),
         (Which::Pile, pile::check),
         (Which::Stack, stack::check),
+        (Which::Heap, heap::check),
+        (Which::Slow, slow::check),
+        (Which::Slope, slope::check),
         (Which::Doughnut, doughnut::check),
     ];
     let mut outcomes = Vec::new();

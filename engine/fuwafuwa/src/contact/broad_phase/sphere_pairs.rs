@@ -163,7 +163,12 @@ impl SpherePairs {
     }
 
     /// Updates the spheres and the list of pairs. Returns whether the list changed or a new tick began.
-    pub fn follow<D: Dim>(&mut self, spheres: &mut Spheres, bodies: &SoftBodies<D>) -> bool {
+    pub fn follow<D: Dim>(
+        &mut self,
+        spheres: &mut Spheres,
+        bodies: &SoftBodies<D>,
+        duration: f32,
+    ) -> bool {
         let is_new_tick = std::mem::take(&mut self.is_new_tick);
         if spheres.awake.is_empty() {
             self.list.clear();
@@ -171,14 +176,14 @@ impl SpherePairs {
             return is_new_tick;
         }
         if self.bins.is_none() || self.elapsed > self.duration {
-            spheres.move_all(bodies);
+            spheres.move_all(bodies, duration);
             self.find_all(spheres, bodies);
             return true;
         }
         if self.spare > 0.0 && self.changed.is_empty() && !is_new_tick {
-            spheres.move_close(bodies);
+            spheres.move_close(bodies, duration);
         } else {
-            spheres.move_all(bodies);
+            spheres.move_all(bodies, duration);
             self.find_beyond_slack(spheres);
         }
         let mut changed = std::mem::take(&mut self.changed);
