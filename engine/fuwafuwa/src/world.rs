@@ -225,8 +225,16 @@ impl<D: Dim> World<D> {
             let damping = motions.iter().zip(&touching[slot]);
             let damping = damping.map(|(motion, &touches)| {
                 let is_crumb = motion.nodes as usize == D::CORNERS;
-                let spin = if is_crumb && touches { rolling_resistance } else { 0.0 };
-                let rates = PieceDamping { vibration, spin, drag };
+                let spin = if is_crumb && touches {
+                    rolling_resistance
+                } else {
+                    0.0
+                };
+                let rates = PieceDamping {
+                    vibration,
+                    spin,
+                    drag,
+                };
                 rates.over(interval)
             });
             let damping: Vec<PieceDamping> = damping.collect();

@@ -45,7 +45,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         .flat_map(|dim| MATERIALS.map(|named| (dim, named)))
         .collect();
     let found = parallel::each(&cases, progress, |&(dim, named)| match dim {
-        2 => fall::<Dim2>(std::env::var("HN").map_or(12, |v| v.parse().unwrap()), named, BODIES, DURATION),
+        2 => fall::<Dim2>(16, named, BODIES, DURATION),
         _ => fall::<Dim3>(8, named, BODIES, DURATION),
     })?;
     let mut outcomes = Vec::new();
@@ -59,7 +59,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     Ok(outcomes)
 }
 
-/// Drops bodies with `n` voxels across into a pen that is five bodies wide, in 3D three by two bodies.
+/// Drops bodies with `n` voxels across into a pen that is four bodies wide, in 3D three by two bodies.
 fn fall<D: Dim>(
     n: usize,
     (_, young, friction): Named,
@@ -68,8 +68,7 @@ fn fall<D: Dim>(
 ) -> Result<Heap> {
     let mut world = World::<D>::new(WorldConfig::default())?;
     let pitch = 1.1 * WIDTH;
-    let w = std::env::var("HW").map_or(5, |v| v.parse().unwrap()); let seed: usize = std::env::var("HS").map_or(7, |v| v.parse().unwrap());
-    let wide = if D::N == 2 { [w, 1] } else { [3, 2] };
+    let wide = if D::N == 2 { [4, 1] } else { [3, 2] };
     let size = wide.map(|count| count as f32 * pitch);
     let planes = [
         (Vec3::Y, Vec3::ZERO),
@@ -95,8 +94,8 @@ fn fall<D: Dim>(
         };
         let (x, z) = (place % wide[0], place / wide[0] % wide[1]);
         let layer = place / (wide[0] * wide[1]);
-        // Each layer is shifted sideways by another amount, so that no body stands exactly on another.
-        let shift = 0.04 * WIDTH * ((1 + layer * 7 + place * seed) % 11) as f32 / 5.0;
+        // Each body is shifted by another amount, so that no body stands exactly on another.
+        let shift = 0.008 * WIDTH * ((1 + layer * 7 + place * 3) % 11) as f32;
         let at = [x as f32, layer as f32 + 0.05, z as f32].map(|k| k * pitch + shift);
         let body = SoftBody::new(grid, &[material])?;
         world.add_soft_body(body.translated(D::Vector::from_vec3(Vec3::from(at))));

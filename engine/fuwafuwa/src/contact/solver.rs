@@ -88,8 +88,7 @@ impl Contacts {
         });
         self.exits.extend(exits);
         find_kinematic(rigids, duration, &mut self.kinematic);
-        let woken =
-            find_dynamic::<D>(rigids, &nearby.rigids, rest, duration, &mut self.dynamic);
+        let woken = find_dynamic::<D>(rigids, &nearby.rigids, rest, duration, &mut self.dynamic);
         hits.rigids.extend(woken);
         hits.sort();
         hits

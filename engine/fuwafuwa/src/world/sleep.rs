@@ -62,7 +62,9 @@ pub fn filter_centres<D: Dim>(
             piece.settled_at = filtered(piece.settled_at, centre, size, duration);
         }
     }
-    let dynamic = rigids.iter_mut().filter(|rigid| rigid.is_dynamic() && rigid.moves());
+    let dynamic = rigids
+        .iter_mut()
+        .filter(|rigid| rigid.is_dynamic() && rigid.moves());
     for rigid in dynamic {
         let size = rigid.rest_size();
         rigid.settled_at = filtered(rigid.settled_at, rigid.position(), size, duration);

@@ -249,7 +249,8 @@ impl MaterialText {
             density: Some(material.density),
             damping: Some(material.damping),
             friction: Some(material.friction),
-            rolling_resistance: (material.rolling_resistance != Material::default().rolling_resistance)
+            rolling_resistance: (material.rolling_resistance
+                != Material::default().rolling_resistance)
                 .then_some(material.rolling_resistance),
             strength: finite(material.strength),
             toughness: finite(material.toughness),

@@ -3,9 +3,7 @@
 
 use super::contact_row::{AHEAD, CLOSE, Contact, is_close};
 use super::contact_sides::{DynamicContact, KinematicContact};
-use crate::contact::broad_phase::{
-    Impulse, PressedContact, RigidContactPoint, RigidContactPoints,
-};
+use crate::contact::broad_phase::{Impulse, PressedContact, RigidContactPoint, RigidContactPoints};
 use crate::contact::rest_speeds::RestSpeeds;
 use crate::foundation::arena::RigidSlot;
 use crate::foundation::dim::{Dim, inner};

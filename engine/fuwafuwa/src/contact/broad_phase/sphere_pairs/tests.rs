@@ -118,7 +118,7 @@ fn check<D: Dim>(n: usize) {
                 spheres.wake(&woken, &mut pairs.changed);
             }
             whole += u32::from(pairs.bins.is_none());
-            again += u32::from(pairs.follow(&mut spheres, &bodies));
+            again += u32::from(pairs.follow(&mut spheres, &bodies, 1.0 / 960.0));
             compare(
                 &pairs,
                 &spheres,
@@ -169,7 +169,7 @@ fn check_tears<D: Dim>(n: usize) {
     for tick in 0..20 {
         start_tick(&mut spheres, &mut pairs, &bodies);
         for round in 0..4 {
-            pairs.follow(&mut spheres, &bodies);
+            pairs.follow(&mut spheres, &bodies, 1.0 / 960.0);
             compare(
                 &pairs,
                 &spheres,
