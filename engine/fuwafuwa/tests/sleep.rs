@@ -16,15 +16,16 @@ fn config<D: Dim>(gravity: f32) -> WorldConfig<D> {
     }
 }
 
-fn unbreakable() -> Material {
+fn damped() -> Material {
     Material {
+        damping: 0.5,
         strength: f32::INFINITY,
         ..Material::default()
     }
 }
 
 fn cube<D: Dim>() -> SoftBody<D> {
-    SoftBody::new(VoxelGrid::cube(8, 0.5).unwrap(), &[unbreakable()]).unwrap()
+    SoftBody::new(VoxelGrid::cube(8, 0.5).unwrap(), &[damped()]).unwrap()
 }
 
 fn add_floor<D: Dim>(world: &mut World<D>, friction: f32) {

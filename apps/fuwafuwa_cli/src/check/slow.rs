@@ -22,7 +22,7 @@ const SAG_TOLERANCE: f64 = 0.02;
 /// Speed of the floating bodies [m/s].
 const FLOATING: f32 = 0.02;
 /// Slopes of the frictionless planes, as tangents of their angles.
-const SLOPES: [f32; 2] = [0.015, 0.005];
+const SLOPES: [f32; 2] = [0.015, 0.01];
 /// Maximum relative deviation of a speed.
 const SPEED_TOLERANCE: f64 = 0.01;
 
