@@ -13,9 +13,6 @@ const PUSH_OUT: f32 = 0.2;
 /// Maximum speed at which an overlap is resolved [m/s].
 pub const PUSH_OUT_SPEED: f32 = 0.5;
 
-/// Share of Coulomb's limit from which a contact counts as sliding. It allows for rounding.
-const SLIDING: f32 = 0.999;
-
 /// Gap below which a contact is active [voxels], now or within `AHEAD` substeps at the present speed.
 pub const CLOSE: f32 = 0.05;
 /// Number of substeps for which the gap is extrapolated to decide whether a contact is active. The extra half
@@ -121,19 +118,17 @@ impl Contact {
         change
     }
 
-    /// Like [`Contact::solve`], but brings the relative velocity along the normal to 0. Friction of a sliding
-    /// contact is limited by the remaining normal impulse: the part that resolved an overlap must not brake.
-    /// Friction of a contact that sticks stays as it is.
+    /// Like [`Contact::solve`], but brings the relative velocity along the normal to 0. Friction is limited by
+    /// the remaining normal impulse: the part that resolved an overlap must not brake.
     #[inline(always)]
     pub fn relax<D: Dim>(&mut self, relative: Row) -> Row {
         let approach = inner::<D>(relative, self.normal);
         let normal_impulse = (self.normal_impulse - approach * self.effective_mass).max(0.0);
         let mut change = self.normal * (normal_impulse - self.normal_impulse);
-        let limit = SLIDING * self.friction * self.normal_impulse;
         self.normal_impulse = normal_impulse;
         let held = self.friction * normal_impulse;
         let friction = inner::<D>(self.friction_impulse, self.friction_impulse);
-        if friction >= limit * limit && friction > held * held {
+        if friction > held * held {
             let kept = self.friction_impulse * (held / friction.sqrt());
             change += kept - self.friction_impulse;
             self.friction_impulse = kept;
