@@ -2,4 +2,5 @@
 
 pub mod broad_phase;
 pub mod joint;
+pub mod rest_speeds;
 pub mod solver;

@@ -351,6 +351,11 @@ impl<D: Dim> SoftBody<D> {
         self.cache.properties.friction
     }
 
+    /// Rolling resistance of the crumbs of the body [1/s]: the mean over its voxels.
+    pub(crate) fn rolling_resistance(&self) -> f32 {
+        self.cache.properties.rolling_resistance
+    }
+
     /// Returns whether any material in use has a finite strength; otherwise the body cannot tear.
     pub(crate) fn can_tear(&self) -> bool {
         self.cache.properties.least_strength < f32::INFINITY

@@ -28,10 +28,12 @@ use crate::fracture::knife::{KnifeState, Knives};
 use crate::object_ref::ObjectRef;
 use crate::query::query_cache::QueryCache;
 use crate::rigid_body::RigidBodies;
-use crate::soft_body::damping::{PieceDamping, PieceMotion, apply_damping, motions};
+use crate::soft_body::damping::{PieceDamping, apply_damping, motions};
 use crate::soft_body::{SoftBodies, SoftBody};
 use crate::world::fast_impacts::SlowedPieces;
-use crate::world::sleep::{fall_asleep, fall_asleep_rigid, wake};
+use crate::world::sleep::{
+    all_motions, fall_asleep, fall_asleep_rigid, filter_centres, pressed_sleepers, wake,
+};
 pub use body_handle::{BodyHandle, Removable};
 pub use config::{DEFAULT_SUBSTEPS, DEFAULT_TICK, MAX_TICK, MIN_SUBSTEPS, MIN_TICK, WorldConfig};
 pub use hooks::{AfterSubstep, Hooks, Substep, field_around};
@@ -39,17 +41,6 @@ pub use removal::{PieceSize, Removed};
 #[cfg(feature = "serde")]
 pub(crate) use stored_world::StoredWorld;
 
-/// Decay rate [1/s] of the angular velocity of a one-voxel piece that touches something. Other pieces touch
-/// it as a ball, but it should move like a cube, which does not roll. At this rate, the rotation falls to an
-/// eighth in 0.1 s. A higher rate would stop the rotation in the air between two bounces.
-const CRUMB_SPIN_LOSS: f32 = 20.0;
-/// Extra drag [1/s] of pieces that touch something and move slower than `SETTLING_SPEED`. Without this drag,
-/// heaps creep for a long time before they fall asleep.
-const SETTLING: f32 = 2.0;
-/// Speed below which a piece that touches something gets the extra drag `SETTLING` [m/s], as root mean square
-/// over its nodes. A body that starts to fall exceeds this speed after 0.5 mm. At a higher threshold, the
-/// braking of sliding pieces would be visible.
-const SETTLING_SPEED: f64 = 0.1;
 /// Node speed above which a piece is quarantined [m/s].
 const TOP_SPEED: f32 = 1000.0;
 
@@ -235,15 +226,24 @@ impl<D: Dim> World<D> {
         for (slot, body) in self.bodies.by_slot_mut() {
             body.refresh_awake();
             let motions = motions(body);
-            let (_, rate) = body.damping(substep_duration);
-            let damping: Vec<PieceDamping> = motions
-                .iter()
-                .zip(&touching[slot])
-                .map(|(motion, &touches)| {
-                    damping_of(motion, touches, rate, self.config.drag, D::CORNERS)
-                })
-                .map(|damping| damping.over(interval))
-                .collect();
+            let (_, vibration) = body.damping(substep_duration);
+            let (drag, rolling_resistance) = (self.config.drag, body.rolling_resistance());
+            let damping = motions.iter().zip(&touching[slot]);
+            let damping = damping.map(|(motion, &touches)| {
+                let is_crumb = motion.nodes as usize == D::CORNERS;
+                let spin = if is_crumb && touches {
+                    rolling_resistance
+                } else {
+                    0.0
+                };
+                let rates = PieceDamping {
+                    vibration,
+                    spin,
+                    drag,
+                };
+                rates.over(interval)
+            });
+            let damping: Vec<PieceDamping> = damping.collect();
             apply_damping(body, &motions, &damping);
         }
     }
@@ -274,12 +274,13 @@ impl<D: Dim> World<D> {
     /// pieces and rigid bodies that were hit. They act as immovable walls in this substep and wake at its
     /// end.
     fn solve_constraints(&mut self, duration: f32) -> Hits {
+        let rest = self.config.rest_speeds();
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
-        let (broken, woken) = joint::solve(&mut self.joints, bodies, rigids, duration);
+        let (broken, woken) = joint::solve(&mut self.joints, bodies, rigids, rest, duration);
         let woken_by_knives = self.solve_knife_contacts(duration);
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
-        let mut hits = self.contacts.find(bodies, rigids, nearby, duration);
+        let mut hits = self.contacts.find(bodies, rigids, nearby, rest, duration);
         self.contacts.solve(bodies, rigids, nearby, duration);
         hits.add(woken.pieces, woken.rigids);
         hits.add(woken_by_knives, Vec::new());
@@ -316,16 +317,17 @@ impl<D: Dim> World<D> {
         }
     }
 
-    /// Puts pieces and rigid bodies to sleep that have been slow for long enough.
+    /// Wakes sleepers that are pressed, and puts pieces and rigid bodies to sleep that are at rest.
     fn sleep(&mut self) {
-        let motions: Vec<IndexVec<PieceId, PieceMotion>> = self
-            .bodies
-            .iter_mut()
-            .map(|body| {
-                body.refresh_awake();
-                motions(body)
-            })
-            .collect();
+        let (tick, rest) = (self.config.tick, self.config.rest_speeds());
+        let motions = all_motions(&mut self.bodies);
+        filter_centres(&mut self.bodies, &motions, &mut self.rigids, tick);
+        let hits = pressed_sleepers(&self.bodies, &motions, &self.rigids, &self.nearby);
+        self.wake(&hits.pieces);
+        self.wake_rigids(&hits.rigids);
+        if !self.config.sleep {
+            return;
+        }
         let pairs = self.nearby.nodes.list.iter();
         let is_pushed = |pair: &&NodePair| self.rigids.at(pair.rigid).pushes();
         let kept_awake = pairs
@@ -342,14 +344,14 @@ impl<D: Dim> World<D> {
         let pushed = self.knives.iter().filter(is_pushed);
         let cut = pushed.flat_map(|knife| knife.pieces_inside(&self.bodies));
         let kept_awake: Vec<Hit> = kept_awake.chain(embedded).chain(cut).collect();
-        let fallen = fall_asleep(&mut self.bodies, &motions, &kept_awake, self.config.tick);
+        let fallen = fall_asleep(&mut self.bodies, &motions, &kept_awake, rest, tick);
         let events = fallen.iter().map(|&(body, piece)| Event::FellAsleep {
             body: self.bodies.id(body),
             piece,
         });
         self.events.extend(events);
         let kept_awake = self.contacts.pushed_bodies(&self.rigids);
-        fall_asleep_rigid(&mut self.rigids, &kept_awake, self.config.tick);
+        fall_asleep_rigid(&mut self.rigids, &kept_awake, rest, tick);
     }
 
     /// Wakes the dynamic rigid bodies in `hits`, and requests a new search for nodes near rigid bodies.
@@ -402,26 +404,4 @@ impl<D: Dim> World<D> {
 /// evenly over the substeps.
 fn is_due(substep: u32, substeps: u32, rounds: u32) -> bool {
     substep * rounds % substeps < rounds
-}
-
-/// Returns the damping rates of a piece [1/s]. `rate` is the rate of its internal vibration, `drag` the air
-/// drag.
-fn damping_of(
-    motion: &PieceMotion,
-    touches: bool,
-    rate: f32,
-    drag: f32,
-    corners: usize,
-) -> PieceDamping {
-    let is_crumb = motion.nodes as usize == corners;
-    let settles = touches && motion.speed_squared < SETTLING_SPEED * SETTLING_SPEED;
-    PieceDamping {
-        vibration: rate,
-        spin: if is_crumb && touches {
-            CRUMB_SPIN_LOSS
-        } else {
-            0.0
-        },
-        drag: drag + if settles { SETTLING } else { 0.0 },
-    }
 }

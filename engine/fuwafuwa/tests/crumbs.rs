@@ -244,8 +244,7 @@ fn check_way_out<D: Dim>(n: usize) {
             let speed = crumb.velocity.length();
             assert!(speed < 1.5, "tick {tick}: {speed} m/s");
         }
-        // Checks the momentum only in the first ticks. Later, crumbs outside touch the body, and the extra
-        // drag of slow pieces in contact changes the momentum.
+        // Checks the momentum in the first ticks, in which the crumbs escape.
         if tick < 10 {
             let bodies = world.soft_bodies();
             let linear = bodies.map(|(_, body)| body.momentum().linear);

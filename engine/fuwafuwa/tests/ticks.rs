@@ -79,7 +79,7 @@ fn landing<D: Dim>(tick: f32) -> [f32; 3] {
     let mut world = world::<D>(tick);
     let ball = world.add_soft_body(ball::<D>(12).translated(vector(0.0, 0.5, 0.0)));
     let (mut lowest, mut touched, mut slept) = (f32::MAX, 0.0, 0.0);
-    pass(&mut world, 12.0, |world| {
+    pass(&mut world, 30.0, |world| {
         let seconds = world.ticks() as f32 * tick;
         if touched == 0.0 && { world.events().iter() }
             .any(|event| matches!(event, Event::ContactForce(_)))

@@ -3,7 +3,7 @@
 //! ```toml
 //! dim = 2
 //! gravity = [0.0, -9.81, 0.0]     # [m/s²]
-//! tick = 0.0166666667             # [s]; tick, drag and max_substeps default to those of WorldConfig
+//! tick = 0.0166666667             # [s]; tick, drag, max_substeps and sleep default to those of WorldConfig
 //!
 //! [[material]]                    # number 1
 //! young = 5000.0                  # [Pa]; missing fields take the values of `Material::default`
@@ -144,6 +144,9 @@ pub struct Scene {
     /// Length of a tick [s], default 1/60.
     #[serde(default = "usual_tick", skip_serializing_if = "is_usual_tick")]
     pub tick: f32,
+    /// Whether bodies at rest fall asleep, default true.
+    #[serde(default = "usual_sleep", skip_serializing_if = "is_usual_sleep")]
+    pub sleep: bool,
     /// Viewing time [s], default 3.
     #[serde(default = "usual_seconds")]
     pub seconds: f32,
@@ -280,6 +283,7 @@ impl Scene {
             drag: self.drag,
             max_substeps: self.max_substeps,
             tick: self.tick,
+            sleep: self.sleep,
         };
         let world = World::new(settings);
         let mut world = world.map_err(|error| FieldError::engine("gravity", error))?;
@@ -443,6 +447,14 @@ fn usual_substeps() -> u32 {
 
 fn usual_tick() -> f32 {
     DEFAULT_TICK
+}
+
+fn usual_sleep() -> bool {
+    true
+}
+
+fn is_usual_sleep(sleep: &bool) -> bool {
+    *sleep
 }
 
 fn is_usual_tick(tick: &f32) -> bool {

@@ -4,6 +4,7 @@ mod beam;
 mod doughnut;
 mod energy;
 mod free_fall;
+mod heap;
 mod impact;
 mod momentum;
 mod motion;
@@ -13,6 +14,8 @@ mod period;
 mod pile;
 mod random;
 mod sag;
+mod slope;
+mod slow;
 mod spin;
 mod stack;
 mod statics;
@@ -55,6 +58,12 @@ enum Which {
     Pile,
     /// A stack of bodies must stand still.
     Stack,
+    /// Heaps of balls and cubes must fall asleep and stay asleep.
+    Heap,
+    /// Bodies that sag, float or slide slowly must not be stopped.
+    Slow,
+    /// Blocks on inclined planes must slide as Coulomb's law says, or rest.
+    Slope,
     /// A ring squeezed shut must not pass through itself.
     Doughnut,
     /// Bodies in flight must move like a point mass, at every size and speed.
@@ -69,7 +78,7 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 12] = [
+    let checks: [(Which, Check); 15] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
@@ -79,6 +88,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         (Which::Tear, tear::check),
         (Which::Pile, pile::check),
         (Which::Stack, stack::check),
+        (Which::Heap, heap::check),
+        (Which::Slow, slow::check),
+        (Which::Slope, slope::check),
         (Which::Doughnut, doughnut::check),
         (Which::FreeFall, free_fall::check),
         (Which::Impact, impact::check),

@@ -40,12 +40,6 @@ pub use supported_bodies::{
     bounds_of, sleeping_in, supported_by_body, supported_by_pieces, supported_by_rigid,
 };
 
-/// Speed above which a moving object wakes a sleeper that it touches [m/s]: five times the sleep speed
-/// threshold. With a lower value, a heap would keep itself awake. The speed of a contact sphere is the
-/// distance that it moved in the last substep, divided by the substep. Its velocity is not used: the contacts
-/// have not yet corrected it, so it can exceed this limit in a heap at rest.
-pub const WAKE_SPEED: f32 = 0.15;
-
 /// Results of the broad phase: objects that may touch. A new tick reuses only the contact impulses, the
 /// `met_in_front` flags and the order of the contact spheres from the last tick. It rebuilds everything else.
 #[derive(Clone, Debug, Default)]

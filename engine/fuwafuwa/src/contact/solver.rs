@@ -12,7 +12,8 @@ mod escape_contact;
 mod rigid_contact_rows;
 mod solver_velocities;
 
-use crate::contact::broad_phase::{ContactSphere, MARGIN, Nearby, NodePairs, WAKE_SPEED};
+use crate::contact::broad_phase::{ContactSphere, MARGIN, Nearby, NodePairs};
+use crate::contact::rest_speeds::RestSpeeds;
 use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::{Dim, inner};
 use crate::foundation::ids::{IndexVec, PieceId};
@@ -72,12 +73,13 @@ impl Contacts {
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
         nearby: &mut Nearby,
+        rest: RestSpeeds,
         duration: f32,
     ) -> Hits {
         let mut hits = Hits::default();
         self.velocities.clear(bodies);
-        self.find_nodes(bodies, rigids, &mut nearby.nodes, duration, &mut hits);
-        self.find_spheres(bodies, nearby, duration, &mut hits.pieces);
+        self.find_nodes(bodies, rigids, &mut nearby.nodes, rest, duration, &mut hits);
+        self.find_spheres(bodies, nearby, rest, duration, &mut hits.pieces);
         self.exits.clear();
         let (spheres, velocities) = (&nearby.spheres, &mut self.velocities);
         let exits = nearby.embedded.list.iter();
@@ -86,7 +88,7 @@ impl Contacts {
         });
         self.exits.extend(exits);
         find_kinematic(rigids, duration, &mut self.kinematic);
-        let woken = find_dynamic::<D>(rigids, &nearby.rigids, duration, &mut self.dynamic);
+        let woken = find_dynamic::<D>(rigids, &nearby.rigids, rest, duration, &mut self.dynamic);
         hits.rigids.extend(woken);
         hits.sort();
         hits
@@ -97,6 +99,7 @@ impl Contacts {
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
         pairs: &mut NodePairs,
+        rest: RestSpeeds,
         duration: f32,
         hits: &mut Hits,
     ) {
@@ -145,7 +148,8 @@ impl Contacts {
                 pair.impulse.speed = pair.impulse.speed.max(-approach);
                 let may_wake = moves || rigid.is_asleep();
                 if may_wake && gap < WAKING_NODE * size {
-                    let is_fast = |speed: Row| inner::<D>(speed, speed) > WAKE_SPEED * WAKE_SPEED;
+                    let waking = rest.wake_speed(size);
+                    let is_fast = |speed: Row| inner::<D>(speed, speed) > waking * waking;
                     let wakes = rigid.pushes() || moves && is_fast(own);
                     if wakes && body.pieces().sleeps(pair.node) {
                         let piece = body.pieces().of_node(pair.node);
@@ -188,11 +192,11 @@ impl Contacts {
         &mut self,
         bodies: &SoftBodies<D>,
         nearby: &mut Nearby,
+        rest: RestSpeeds,
         duration: f32,
         hits: &mut Vec<Hit>,
     ) {
         self.spheres.clear();
-        let waking = WAKE_SPEED * duration;
         let friction = |body: Option<&SoftBody<D>>| body.map_or(0.0, SoftBody::friction);
         let frictions: &IndexVec<BodySlot, f32> = &bodies.slots().map(friction).collect();
         let has_layers = bodies.iter().any(|body| body.layers() != Layers::default());
@@ -256,10 +260,15 @@ impl Contacts {
                     continue;
                 }
                 pair.impulse.speed = pair.impulse.speed.max(-approach);
-                let moved = all.moved[a].max(all.moved[b]);
-                if gap < WAKING_SPHERE * touching && moved > waking * waking {
-                    let sleepers = both.into_iter().filter(|sphere| sphere.asleep);
-                    hits.extend(sleepers.map(|sphere| (sphere.body, sphere.piece)));
+                if gap < WAKING_SPHERE * touching && (both[0].asleep || both[1].asleep) {
+                    let waking = rest.wake_speed(touching);
+                    let drifts = [a, b].map(|sphere| all.drift[sphere]);
+                    let drifts = drifts.map(|drift| inner::<D>(drift, drift));
+                    let is_fast = drifts[0].max(drifts[1]) > waking * waking;
+                    if is_fast {
+                        let sleepers = both.into_iter().filter(|sphere| sphere.asleep);
+                        hits.extend(sleepers.map(|sphere| (sphere.body, sphere.piece)));
+                    }
                 }
                 let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
                 if first + second == 0.0 {

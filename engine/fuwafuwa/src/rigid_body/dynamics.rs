@@ -94,6 +94,12 @@ impl RigidState {
         Vec3::from(furthest).length()
     }
 
+    /// Returns the size of the body for [`RestSpeeds`](crate::contact::rest_speeds::RestSpeeds) [m]: a quarter of
+    /// the inradius, which is the width of a voxel of a body with eight voxels across.
+    pub(crate) fn rest_size(&self) -> f32 {
+        0.25 * self.local_shape.inradius().min(1.0)
+    }
+
     /// Sets the target rotation.
     pub(crate) fn set_target_rotation<D: Dim>(&mut self, rotation: Rotation) -> Result<(), Error> {
         self.require_target()?;

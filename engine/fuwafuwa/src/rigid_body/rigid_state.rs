@@ -45,8 +45,10 @@ pub struct RigidState {
     pub(crate) angular_velocity: Vec3,
     /// Whether the body sleeps.
     pub(crate) asleep: bool,
-    /// Sleep timer: time for which the body has been slow [s].
+    /// Sleep timer: time for which the body has been at rest [s].
     pub(crate) sleep_timer: f32,
+    /// Position of the body, low-pass filtered over half a second [m]; see `world::sleep`.
+    pub(crate) settled_at: Vec3,
     /// Position at the start of the tick [m]; an invalid body is reset to it.
     pub(super) position_before: Vec3,
     /// Rotation at the start of the tick; an invalid body is reset to it.
@@ -70,7 +72,7 @@ pub struct RigidState {
 hash_state! {
     struct RigidState {
         friction, restitution, motion_type, layers, is_sensor, user_data, local_shape, shape, position, velocity,
-        rotation, angular_velocity, asleep, sleep_timer, position_before, rotation_before, inertia,
+        rotation, angular_velocity, asleep, sleep_timer, settled_at, position_before, rotation_before, inertia,
         inverse_inertia, target_at_tick_end, target_rotation, target_now, target_velocity, reactions,
     }
 }
@@ -113,6 +115,7 @@ impl<D: Dim> From<&RigidBody<D>> for RigidState {
             angular_velocity: angular,
             asleep: false,
             sleep_timer: 0.0,
+            settled_at: position,
             position_before: position,
             rotation_before: rotation,
             inertia: body.motion_type.inertia::<D>(&local_shape),

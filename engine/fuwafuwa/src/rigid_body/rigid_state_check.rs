@@ -76,7 +76,11 @@ impl RigidState {
             &mut self.target_at_tick_end,
             &mut self.target_now,
         ];
-        let others = [&mut self.position_before, &mut self.velocity];
+        let others = [
+            &mut self.position_before,
+            &mut self.velocity,
+            &mut self.settled_at,
+        ];
         for vector in positions.into_iter().chain(others) {
             *vector = flat::<D>(*vector);
         }

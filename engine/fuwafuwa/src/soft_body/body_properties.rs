@@ -16,6 +16,8 @@ pub struct BodyProperties {
     pub slowest_frequency: f64,
     /// Friction coefficient; mean over the voxels.
     pub friction: f32,
+    /// Rolling resistance of crumbs [1/s]; mean over the voxels.
+    pub rolling_resistance: f32,
     /// Lowest strength of the materials in use [Pa].
     pub least_strength: f32,
     /// Speed of the pressure wave in the material in which it is fastest [m/s].
@@ -56,6 +58,7 @@ impl BodyProperties {
             damping: mean(&|material| f64::from(material.damping)),
             slowest_frequency: std::f64::consts::PI * (young / density).sqrt() / width,
             friction: mean(&|material| f64::from(material.friction)) as f32,
+            rolling_resistance: mean(&|material| f64::from(material.rolling_resistance)) as f32,
             least_strength: strengths.fold(f32::INFINITY, f32::min),
             fastest_wave: waves.fold(0.0, f64::max),
             fastest_frequency: breathing_speeds.fold(0.0, f64::max) / f64::from(grid.voxel_size()),

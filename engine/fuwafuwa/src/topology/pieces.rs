@@ -12,6 +12,7 @@ use crate::foundation::disjoint_sets::DisjointSets;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::topology::mesh::Mesh;
+use glam::Vec3;
 use std::collections::{BTreeMap, VecDeque};
 
 /// Placeholder for the piece of an element that is not assigned to a piece yet.
@@ -28,11 +29,13 @@ pub struct Piece {
     pub quarantined: bool,
     /// Whether the piece was [removed](crate::World::remove_piece): only its number remains.
     pub removed: bool,
-    /// Time for which the piece has been slower than the sleep threshold [s].
+    /// Time for which the piece has been at rest [s].
     pub sleep_timer: f32,
+    /// Centre of mass of the piece, low-pass filtered over half a second [m]; see `world::sleep`.
+    pub settled_at: Vec3,
 }
 
-hash_state! { struct Piece { asleep, quarantined, removed, sleep_timer } }
+hash_state! { struct Piece { asleep, quarantined, removed, sleep_timer, settled_at } }
 
 /// Pieces of one body, and the piece of each element and node.
 #[derive(Clone, Debug, Default)]

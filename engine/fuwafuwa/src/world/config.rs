@@ -1,5 +1,6 @@
-//! Configuration of a world: gravity, air drag, substeps and tick length.
+//! Configuration of a world: gravity, air drag, substeps, tick length and sleep.
 
+use crate::contact::rest_speeds::RestSpeeds;
 use crate::error::{Error, require};
 use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::hash::hash_state;
@@ -43,9 +44,13 @@ pub struct WorldConfig<D: Dim> {
     /// are exchanged with the program. Substeps, fracture and damping keep their rates per second; shorter
     /// ticks cost a little more. Worlds of different tick lengths behave alike but are not bit-identical.
     pub tick: f32,
+    /// Whether bodies that are at rest fall asleep by themselves, default true. A sleeping body costs no time
+    /// and moves only after it wakes. The [guide](crate::guide::acting) has the rule by which bodies fall
+    /// asleep and wake. Even if this is false, [`World::put_to_sleep`](crate::World::put_to_sleep) works.
+    pub sleep: bool,
 }
 
-hash_state! { [D: Dim] struct WorldConfig<D> { gravity, drag, max_substeps, tick } }
+hash_state! { [D: Dim] struct WorldConfig<D> { gravity, drag, max_substeps, tick, sleep } }
 
 impl<D: Dim> Default for WorldConfig<D> {
     fn default() -> Self {
@@ -54,6 +59,7 @@ impl<D: Dim> Default for WorldConfig<D> {
             drag: 0.0,
             max_substeps: 64,
             tick: DEFAULT_TICK,
+            sleep: true,
         }
     }
 }
@@ -83,6 +89,14 @@ impl<D: Dim> WorldConfig<D> {
     /// Returns the shortest allowed substep [s]; bodies that require a shorter one are softened.
     pub(super) fn shortest_substep(&self) -> f64 {
         f64::from(self.tick) / f64::from(self.max_substeps_per_tick())
+    }
+
+    /// Returns the speeds at which objects count as at rest.
+    pub(super) fn rest_speeds(&self) -> RestSpeeds {
+        RestSpeeds {
+            gravity: self.gravity.to_vec3().length(),
+            drag: self.drag,
+        }
     }
 
     pub(super) fn check(&self) -> Result<(), Error> {

@@ -23,6 +23,8 @@ pub struct MaterialText {
     pub damping: Option<f32>,
     /// Coulomb friction between pieces.
     pub friction: Option<f32>,
+    /// Rolling resistance of crumbs [1/s].
+    pub rolling_resistance: Option<f32>,
     /// Tensile strength [Pa].
     pub strength: Option<f32>,
     /// Fracture toughness [Pa √m].
@@ -227,6 +229,7 @@ impl MaterialText {
             density: self.density.unwrap_or(usual.density),
             damping: self.damping.unwrap_or(usual.damping),
             friction: self.friction.unwrap_or(usual.friction),
+            rolling_resistance: self.rolling_resistance.unwrap_or(usual.rolling_resistance),
             strength: borne(self.strength, usual.strength),
             toughness: borne(self.toughness, usual.toughness),
             yield_strain: self.yield_strain.unwrap_or(usual.yield_strain),
@@ -246,6 +249,9 @@ impl MaterialText {
             density: Some(material.density),
             damping: Some(material.damping),
             friction: Some(material.friction),
+            rolling_resistance: (material.rolling_resistance
+                != Material::default().rolling_resistance)
+                .then_some(material.rolling_resistance),
             strength: finite(material.strength),
             toughness: finite(material.toughness),
             yield_strain: (material.yield_strain < f32::INFINITY).then_some(material.yield_strain),

@@ -77,6 +77,7 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
         drag: settings.drag,
         max_substeps: settings.max_substeps,
         tick: settings.tick,
+        sleep: settings.sleep,
         seconds: super::usual_seconds(),
         view: view_of(world),
         material: Vec::new(),

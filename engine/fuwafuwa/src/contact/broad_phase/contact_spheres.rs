@@ -10,6 +10,10 @@ use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 use crate::topology::changes::{Bookmark, Changes};
 
+/// Time constant of the low-pass filter of the velocities of spheres [s]. In a heap at rest, a surface element
+/// oscillates at up to 0.3 m/s for a single substep.
+const DRIFT_TIME: f32 = 0.008;
+
 /// Contact spheres of all bodies.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -46,14 +50,14 @@ pub struct Spheres {
     /// Velocity of each close sphere in this substep, before contacts are solved [m/s].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub velocities: IndexVec<SphereId, Row>,
-    /// Squared distance that each close sphere moved in the last substep [m²].
+    /// Velocity of each close sphere [m/s], low-pass filtered: see [`Spheres::follow`].
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub moved: IndexVec<SphereId, f32>,
+    pub drift: IndexVec<SphereId, Row>,
 }
 
 hash_state! {
     struct Spheres { keys } skip {
-        list, by_voxel, crack_face_pairs, followed, awake, centres, close, is_close, velocities, moved,
+        list, by_voxel, crack_face_pairs, followed, awake, centres, close, is_close, velocities, drift,
     }
 }
 
@@ -124,7 +128,7 @@ impl Spheres {
         self.close.clear();
         self.is_close.fill(false);
         self.velocities.fill(Row::ZERO);
-        self.moved.fill(0.0);
+        self.drift.fill(Row::ZERO);
         self.awake.clear();
         let all = self.list.ids();
         self.awake.extend(all.filter(|&id| !self.list[id].asleep));
@@ -302,29 +306,29 @@ impl Spheres {
         self.close.clear();
         let all = { self.is_close.entries_mut() }
             .zip(&self.list)
-            .zip(&mut self.moved);
-        for (((id, is_close), sphere), moved) in all.filter(|all| *all.0.0.1) {
+            .zip(&mut self.drift);
+        for (((id, is_close), sphere), drift) in all.filter(|all| *all.0.0.1) {
             *is_close = !sphere.asleep;
             if *is_close {
                 self.close.push(id);
             }
             if *is_close && !was_close[id] {
-                *moved = 0.0;
+                *drift = Row::ZERO;
             }
         }
     }
 
-    /// Updates the centres of all awake spheres.
-    pub fn move_all<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
+    /// Updates the centres of all awake spheres after a substep of `duration` [s].
+    pub fn move_all<D: Dim>(&mut self, bodies: &SoftBodies<D>, duration: f32) {
         for at in 0..self.awake.len() {
-            self.follow::<D>(self.awake[at], bodies);
+            self.follow::<D>(self.awake[at], bodies, duration);
         }
     }
 
-    /// Updates the centres of the close spheres.
-    pub fn move_close<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
+    /// Updates the centres of the close spheres after a substep of `duration` [s].
+    pub fn move_close<D: Dim>(&mut self, bodies: &SoftBodies<D>, duration: f32) {
         for at in 0..self.close.len() {
-            self.follow::<D>(self.close[at], bodies);
+            self.follow::<D>(self.close[at], bodies, duration);
         }
     }
 
@@ -347,12 +351,15 @@ impl Spheres {
         a.is_held_to(&b)
     }
 
-    fn follow<D: Dim>(&mut self, id: SphereId, bodies: &SoftBodies<D>) {
+    /// Updates the centre of a sphere after a substep of `duration` [s], and the filtered velocity if the sphere
+    /// is close. The filter uses displacements: velocities at this time have not yet been corrected by contacts.
+    fn follow<D: Dim>(&mut self, id: SphereId, bodies: &SoftBodies<D>, duration: f32) {
         let sphere = &self.list[id];
         let centre = sphere.mean::<D>(bodies.at(sphere.body).positions());
         if self.is_close[id] {
+            let drift = &mut self.drift[id];
             let moved = centre - self.centres[id];
-            self.moved[id] = moved.dot(moved);
+            *drift += (moved - *drift * duration) * (1.0 / (DRIFT_TIME + duration));
         }
         self.centres[id] = centre;
     }
@@ -360,6 +367,6 @@ impl Spheres {
     fn make_room(&mut self) {
         self.is_close.resize(self.list.len(), false);
         self.velocities.resize(self.list.len(), Row::ZERO);
-        self.moved.resize(self.list.len(), 0.0);
+        self.drift.resize(self.list.len(), Row::ZERO);
     }
 }

@@ -182,14 +182,14 @@ impl SpherePairs {
             return is_new_tick;
         }
         if self.bins.is_none() || self.elapsed >= self.duration {
-            spheres.move_all(bodies);
+            spheres.move_all(bodies, substep);
             self.find_all(spheres, bodies);
             return true;
         }
         if self.spare > 0.0 && self.changed.is_empty() && !is_new_tick {
-            spheres.move_close(bodies);
+            spheres.move_close(bodies, substep);
         } else {
-            spheres.move_all(bodies);
+            spheres.move_all(bodies, substep);
             self.find_beyond_slack(spheres);
         }
         let mut changed = std::mem::take(&mut self.changed);

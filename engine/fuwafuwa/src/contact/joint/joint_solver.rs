@@ -4,7 +4,7 @@ use super::JointKind;
 use super::JointState;
 use super::attached_anchor::AnchorState;
 use super::joint_end::Woken;
-use crate::contact::broad_phase::WAKE_SPEED;
+use crate::contact::rest_speeds::RestSpeeds;
 use crate::foundation::dim::Dim;
 use crate::rigid_body::RigidBodies;
 use crate::soft_body::SoftBodies;
@@ -31,14 +31,16 @@ impl JointState {
         &mut self,
         bodies: &mut SoftBodies<D>,
         rigids: &mut RigidBodies,
+        rest: RestSpeeds,
         woken: &mut Woken,
     ) -> bool {
         let [Some(first), Some(second)] = self.anchor_states(bodies, rigids) else {
             return false;
         };
+        let waking = rest.wake_speed(WAKE_STRETCH);
         let is_strained = self.is_strained((first.at - second.at).length());
         for (own, other, anchor) in [(first, second, 0), (second, first, 1)] {
-            if own.is_asleep && (is_strained || other.velocity.length() > WAKE_SPEED) {
+            if own.is_asleep && (is_strained || other.velocity.length() > waking) {
                 self.attached[anchor].wake(bodies, woken);
             }
         }

@@ -3,6 +3,7 @@
 use super::attached_anchor::AttachedAnchor;
 use super::joint_end::{JointEnd, Woken};
 use super::{Joint, JointAnchor, JointKind};
+use crate::contact::rest_speeds::RestSpeeds;
 use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, JointHandle};
 use crate::foundation::dim::{Dim, DimVector};
@@ -215,11 +216,12 @@ pub(crate) fn solve<D: Dim>(
     joints: &mut Joints,
     bodies: &mut SoftBodies<D>,
     rigids: &mut RigidBodies,
+    rest: RestSpeeds,
     duration: f32,
 ) -> (Vec<JointHandle>, Woken) {
     let (mut broken, mut woken) = (Vec::new(), Woken::default());
     for (id, joint) in joints.entries_mut() {
-        match joint.start(bodies, rigids, &mut woken) {
+        match joint.start(bodies, rigids, rest, &mut woken) {
             true => {}
             false => broken.push(id),
         }

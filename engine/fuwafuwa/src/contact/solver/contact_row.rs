@@ -118,14 +118,21 @@ impl Contact {
         change
     }
 
-    /// Like [`Contact::solve`], but brings the relative velocity along the normal to 0 and leaves friction as
-    /// it is.
+    /// Like [`Contact::solve`], but brings the relative velocity along the normal to 0. Friction is limited by
+    /// the remaining normal impulse: the part that resolved an overlap must not brake.
     #[inline(always)]
     pub fn relax<D: Dim>(&mut self, relative: Row) -> Row {
         let approach = inner::<D>(relative, self.normal);
         let normal_impulse = (self.normal_impulse - approach * self.effective_mass).max(0.0);
-        let change = self.normal * (normal_impulse - self.normal_impulse);
+        let mut change = self.normal * (normal_impulse - self.normal_impulse);
         self.normal_impulse = normal_impulse;
+        let held = self.friction * normal_impulse;
+        let friction = inner::<D>(self.friction_impulse, self.friction_impulse);
+        if friction > held * held {
+            let kept = self.friction_impulse * (held / friction.sqrt());
+            change += kept - self.friction_impulse;
+            self.friction_impulse = kept;
+        }
         change
     }
 

@@ -3,9 +3,8 @@
 
 use super::contact_row::{AHEAD, CLOSE, Contact, is_close};
 use super::contact_sides::{DynamicContact, KinematicContact};
-use crate::contact::broad_phase::{
-    Impulse, PressedContact, RigidContactPoint, RigidContactPoints, WAKE_SPEED,
-};
+use crate::contact::broad_phase::{Impulse, PressedContact, RigidContactPoint, RigidContactPoints};
+use crate::contact::rest_speeds::RestSpeeds;
 use crate::foundation::arena::RigidSlot;
 use crate::foundation::dim::{Dim, inner};
 use crate::math::vector::perpendiculars;
@@ -57,6 +56,7 @@ pub fn find_kinematic(rigids: &RigidBodies, duration: f32, found: &mut Vec<Kinem
 pub fn find_dynamic<D: Dim>(
     rigids: &RigidBodies,
     known: &RigidContactPoints,
+    rest: RestSpeeds,
     duration: f32,
     found: &mut Vec<DynamicContact>,
 ) -> Vec<RigidSlot> {
@@ -88,6 +88,7 @@ pub fn find_dynamic<D: Dim>(
                 [rigid, against],
                 margin,
                 known,
+                rest,
                 duration,
                 found,
                 &mut hits,
@@ -114,12 +115,14 @@ fn touch<D: Dim>(
     both: [&RigidState; 2],
     margin: f32,
     known: &RigidContactPoints,
+    rest: RestSpeeds,
     duration: f32,
     found: &mut Vec<DynamicContact>,
     hits: &mut Vec<RigidSlot>,
 ) {
     let manifold = both[0].shape().manifold(both[1].shape(), margin);
     let size = both[0].shape().inradius().min(1.0);
+    let waking = rest.wake_speed(both[0].rest_size());
     let friction = match both[1].motion_type {
         MotionType::Fixed => both[1].friction,
         _ => 0.5 * (both[0].friction + both[1].friction),
@@ -135,7 +138,7 @@ fn touch<D: Dim>(
             continue;
         }
         let speed = own.length().max(other.length());
-        if point.gap < CLOSE * size && (speed > WAKE_SPEED || both[1].pushes()) {
+        if point.gap < CLOSE * size && (speed > waking || both[1].pushes()) {
             let sleepers = [0, 1].into_iter().filter(|&k: &usize| both[k].is_asleep());
             hits.extend(sleepers.map(|k| slots[k]));
         }
