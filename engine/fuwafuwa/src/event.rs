@@ -202,4 +202,7 @@ pub struct StepReport {
     pub inverted: u32,
     /// Number of pieces that were frozen permanently during the tick, see [`Event::Quarantined`].
     pub quarantined: u32,
+    /// Number of soft bodies with less stiffness damping than their materials specify, because the substep
+    /// limits it, see [`World::acting_damping`](crate::World::acting_damping).
+    pub damping_limited: u32,
 }

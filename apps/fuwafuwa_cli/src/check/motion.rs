@@ -2,7 +2,9 @@
 
 use anyhow::Result;
 use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::{Dim, DimVector, Grading, Law, Material, NodeId, SoftBody, Vec3, VoxelGrid};
+use fuwafuwa::{
+    Damping, Dim, DimVector, Grading, Law, Material, NodeId, SoftBody, Vec3, VoxelGrid,
+};
 
 /// Returns a soft material without damping that does not tear.
 pub fn material() -> Material {
@@ -12,7 +14,7 @@ pub fn material() -> Material {
             poisson: 0.3,
         },
         density: 100.0,
-        damping: 0.0,
+        damping: Damping::NONE,
         strength: f32::INFINITY,
         ..Material::default()
     }
