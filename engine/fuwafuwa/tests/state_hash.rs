@@ -450,8 +450,8 @@ fn world_of_everything<D: Blades>(n: usize) -> World<D> {
         strength: 300.0,
         // Calms the cube after its fall, so that no crack grows before rigid bodies press on each other.
         damping: Damping {
-            mass: 4.0,
-            stiffness: 3e-3,
+            mass: 10.0,
+            ..Damping::default()
         },
         toughness: 30.0,
         ..Material::default()
