@@ -2,8 +2,8 @@
 
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    DEFAULT_TICK, Dim3, Material, NodeId, RigidBody, Shape, SoftBody, SoftBodyHandle, Vec3,
-    VoxelGrid, World, WorldConfig,
+    DEFAULT_TICK, Damping, Dim3, Material, NodeId, RigidBody, Shape, SoftBody, SoftBodyHandle,
+    Vec3, VoxelGrid, World, WorldConfig,
 };
 use fuwafuwa_scan::Organ;
 
@@ -253,7 +253,7 @@ pub fn tissues(count: usize) -> Vec<Material> {
             poisson: 0.4,
         },
         density: 1050.0,
-        damping: 0.3,
+        damping: Damping::at(0.3, 8.0),
         friction: 0.1,
         strength: 30_000.0,
         toughness: (young as f32 * energy).sqrt(),

@@ -8,7 +8,8 @@
 use cpu_time::ThreadTime;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim3, Event, Knife, Material, RigidBody, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig,
+    Damping, Dim3, Event, Knife, Material, RigidBody, Shape, SoftBody, Vec3, VoxelGrid, World,
+    WorldConfig,
 };
 use std::error::Error;
 
@@ -20,7 +21,7 @@ fn organ() -> Material {
             poisson: 0.3,
         },
         density: 1000.0,
-        damping: 0.2,
+        damping: Damping::at(0.2, 8.0),
         friction: 0.5,
         strength: 2000.0,
         toughness: 155.0,

@@ -223,4 +223,7 @@ pub struct StepReport {
     pub speed_limited: u32,
     /// Number of pieces that were frozen permanently during the tick, see [`Event::Quarantined`].
     pub quarantined: u32,
+    /// Number of soft bodies with less stiffness damping than their materials specify, because the substep
+    /// limits it, see [`World::acting_damping`](crate::World::acting_damping).
+    pub damping_limited: u32,
 }

@@ -89,6 +89,7 @@ pub use soft_body::SoftBody;
 pub use soft_body::element_law::{Elasticity, Law};
 pub use soft_body::element_state::{ElementState, Energy};
 pub use soft_body::momentum::Momentum;
+pub use soft_body::rayleigh::Damping;
 pub use soft_body::view::{ElementView, Facet, Outline, PieceView};
 pub use topology::cell_hierarchy::Grading;
 pub use topology::changes::{Bookmark, Changes};

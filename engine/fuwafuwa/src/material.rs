@@ -4,6 +4,7 @@ use crate::error::{Error, require};
 use crate::foundation::hash::hash_state;
 use crate::soft_body::element_law::Elasticity;
 use crate::soft_body::plasticity::Plasticity;
+use crate::soft_body::rayleigh::Damping;
 
 /// Material of a voxel.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -13,9 +14,8 @@ pub struct Material {
     pub elasticity: Elasticity,
     /// Density [kg/m³]; usually about 100. In 2D it is that of a sheet 1 m deep.
     pub density: f32,
-    /// Damping ratio of the slowest vibration mode of a body, 0 to 1; usually about 0.08. 0 = vibrates for
-    /// ever, 1 = critically damped. A body of several materials uses the mean over its voxels.
-    pub damping: f32,
+    /// Rayleigh damping: mass damping [1/s] and stiffness damping [s].
+    pub damping: Damping,
     /// Coulomb friction coefficient between pieces and between bodies, 0 to 2; usually about 0.4. A contact
     /// between two soft surfaces uses the mean of their coefficients. A contact with a rigid body uses the
     /// [friction of the rigid body](crate::RigidBody::friction) alone.
@@ -68,7 +68,7 @@ impl Default for Material {
                 poisson: 0.3,
             },
             density: 100.0,
-            damping: 0.08,
+            damping: Damping::default(),
             friction: 0.4,
             rolling_resistance: 20.0,
             strength: 1000.0,
@@ -92,7 +92,7 @@ impl Material {
         };
         let (tiny, huge) = (f32::MIN_POSITIVE, f32::MAX);
         within("density", self.density, tiny, huge, "positive and finite")?;
-        within("damping", self.damping, 0.0, 1.0, "0 to 1")?;
+        self.damping.check()?;
         within("friction", self.friction, 0.0, 2.0, "0 to 2")?;
         let rolling = self.rolling_resistance;
         within("rolling_resistance", rolling, 0.0, 1000.0, "0 to 1000")?;
@@ -132,7 +132,10 @@ impl Material {
     pub fn clay() -> Self {
         Self {
             density: 400.0,
-            damping: 0.5,
+            damping: Damping {
+                mass: 12.0,
+                stiffness: 1e-3,
+            },
             friction: 0.6,
             strength: f32::INFINITY,
             toughness: f32::INFINITY,

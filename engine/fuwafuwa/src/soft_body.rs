@@ -8,6 +8,7 @@ pub mod element_state;
 pub(crate) mod fast_motion;
 pub mod momentum;
 pub mod plasticity;
+pub mod rayleigh;
 pub mod view;
 
 mod access;
@@ -56,10 +57,6 @@ use glam::Vec3;
 /// Ωs: 0.73 in 3D and 0.84 in 2D, at a Poisson's ratio of 0.3. Squashed elements oscillate faster. At 0.6, a
 /// ball stays stable even if it is squashed to 40 % of its height and hit at its wave speed.
 const COURANT: f64 = 0.6;
-/// Fraction of the largest stable damping lead that [`SoftBody::damping`] uses. The lead is the time by which
-/// positions are extrapolated before elastic forces are evaluated. 0.7 leaves about the margin that
-/// [`COURANT`] leaves in 3D for the squared substep: (0.6 / 0.73)² = 0.68.
-const LEAD_USED: f64 = 0.7;
 
 /// Arena of the soft bodies of a world.
 pub type SoftBodies<D> = Arena<SoftBodyHandle, SoftBody<D>>;
@@ -166,8 +163,9 @@ impl<D: Dim> SoftBody<D> {
         self.make_room();
         let voxels: Vec<Point> = self.topology.grid.voxels().collect();
         self.expose(&voxels);
+        let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
+        self.update_mass_damping(&nodes);
         if self.topology.hierarchy.grading() != Grading::Coarse {
-            let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
             self.find_breakable(&nodes);
         }
         self.cache.awake_is_stale = true;
@@ -323,27 +321,6 @@ impl<D: Dim> SoftBody<D> {
     pub fn total_mass(&self) -> f64 {
         let ids = self.topology.mesh.nodes();
         ids.map(|(id, _)| f64::from(self.state.mass[id])).sum()
-    }
-
-    /// Returns the damping for substeps of `duration` [s]: the lead of the elastic forces [s], and the rate
-    /// [1/s] at which the velocities of each piece relax towards its rigid motion. The lead is the time by
-    /// which positions are extrapolated before forces are evaluated.
-    ///
-    /// A lead τ damps the slowest mode, of angular frequency ω, with the ratio τω/2. The fastest mode, of
-    /// angular frequency Ω, is the oscillation of a single voxel. For substeps of length h, this mode is
-    /// stable if Ω²h (h + 2τ) < 4, that is, τ < (4/Ω² − h²) / 2h. The lead is at most [`LEAD_USED`] times
-    /// this bound; the rate supplies the remaining damping of the slowest mode.
-    pub(crate) fn damping(&self, duration: f32) -> (f32, f32) {
-        let ratio = self.cache.properties.damping;
-        let slowest =
-            self.cache.properties.slowest_frequency * self.topology.stiffness_scale.sqrt();
-        let fastest =
-            self.cache.properties.fastest_frequency * self.topology.stiffness_scale.sqrt();
-        let step = f64::from(duration);
-        let max_lead = LEAD_USED * (4.0 / (fastest * fastest) - step * step) / (2.0 * step);
-        let lead = (2.0 * ratio / slowest).min(max_lead).max(0.0);
-        let rate = 2.0 * slowest * (ratio - 0.5 * lead * slowest).max(0.0);
-        (lead as f32, rate as f32)
     }
 
     /// Friction coefficient of the body: the mean over its voxels.

@@ -146,7 +146,7 @@ impl<D: Dim> World<D> {
             if is_due(substep, substeps, rounds) {
                 self.cut_along_edges(&mut report);
                 self.fracture(&mut report);
-                self.damp(duration);
+                self.damp();
             }
             self.integrate_velocities(duration, hooks);
             self.nearby.follow(&self.bodies, &self.rigids, duration);
@@ -160,6 +160,7 @@ impl<D: Dim> World<D> {
             }
         }
         report.inverted = self.bodies.iter().map(SoftBody::inverted_count).sum();
+        report.damping_limited = self.limited_bodies(duration);
         self.quarantine(&mut report);
         self.end_fast_impacts(&mut report);
         self.sleep();
@@ -177,6 +178,12 @@ impl<D: Dim> World<D> {
         let max = self.config.max_substeps_per_tick();
         let usual = self.config.per_tick(60.0 * f64::from(DEFAULT_SUBSTEPS));
         required.clamp(usual.min(max), max)
+    }
+
+    /// Returns the number of soft bodies of which the substep limits the stiffness damping.
+    fn limited_bodies(&self, duration: f32) -> u32 {
+        let is_limited = |body: &&SoftBody<D>| body.is_damping_limited(duration);
+        self.bodies.iter().filter(is_limited).count() as u32
     }
 
     fn start_tick(&mut self) {
@@ -220,13 +227,13 @@ impl<D: Dim> World<D> {
     }
 
     /// Damps the internal vibration of each piece, and applies drag.
-    fn damp(&mut self, substep_duration: f32) {
+    fn damp(&mut self) {
         let interval = self.config.fracture_interval();
         let touching = self.pieces_in_contact();
         for (slot, body) in self.bodies.by_slot_mut() {
             body.refresh_awake();
             let motions = motions(body);
-            let (_, vibration) = body.damping(substep_duration);
+            let vibration = body.mass_damping().unwrap_or(0.0);
             let (drag, rolling_resistance) = (self.config.drag, body.rolling_resistance());
             let damping = motions.iter().zip(&touching[slot]);
             let damping = damping.map(|(motion, &touches)| {
@@ -244,7 +251,7 @@ impl<D: Dim> World<D> {
                 rates.over(interval)
             });
             let damping: Vec<PieceDamping> = damping.collect();
-            apply_damping(body, &motions, &damping);
+            apply_damping(body, &motions, &damping, interval);
         }
     }
 
@@ -292,7 +299,7 @@ impl<D: Dim> World<D> {
     fn integrate_positions(&mut self, duration: f32) {
         let mut furthest = 0.0f32;
         for body in self.bodies.iter_mut() {
-            let (lead, _) = body.damping(duration);
+            let (_, lead) = body.leads(duration);
             furthest = furthest.max(body.move_nodes(duration, lead));
         }
         self.nearby.pass(duration, furthest);

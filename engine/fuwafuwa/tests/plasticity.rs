@@ -4,8 +4,8 @@ use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::inspect::Plasticity;
 use fuwafuwa::inspect::{elastic_part, flow, forces_after};
 use fuwafuwa::{
-    Dim, Dim2, Dim3, DimVector, Material, RigidBody, Shape, SoftBody, SoftBodyHandle, Vec3,
-    VoxelGrid, World, WorldConfig,
+    Damping, Dim, Dim2, Dim3, DimVector, Material, RigidBody, Shape, SoftBody, SoftBodyHandle,
+    Vec3, VoxelGrid, World, WorldConfig,
 };
 use glam::DVec3;
 
@@ -230,7 +230,7 @@ fn fast_path_matches_reference_plasticity() {
 /// preserved, and its energy never grows.
 fn check_kept<D: Dim>() {
     let clay = Material {
-        damping: 0.0,
+        damping: Damping::NONE,
         ..Material::clay()
     };
     let mut world = World::<D>::new(weightless()).unwrap();

@@ -249,7 +249,7 @@ fn remove_piece_has_no_effect_on_vibration_of_rest() {
         for id in nodes {
             let (mut at, _, _) = body.node_state(id);
             match body.pieces().of_node(id) {
-                PieceId(0) => at[1] *= 1.2,
+                PieceId(0) => at[1] *= 1.1,
                 _ => at[0] += 50.0,
             }
             body.set_node_state(id, at, Vec2::ZERO).unwrap();

@@ -8,8 +8,8 @@
 use fuwafuwa::inspect::Hash;
 use fuwafuwa::snapshot::{load, save};
 use fuwafuwa::{
-    Dim, Dim2, Dim3, DimVector, Joint, JointAnchor, JointKind, Knife, Layers, Material, RigidBody,
-    Rotation, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig,
+    Damping, Dim, Dim2, Dim3, DimVector, Joint, JointAnchor, JointKind, Knife, Layers, Material,
+    RigidBody, Rotation, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig,
 };
 use serde::de::value::Error;
 use serde::{Serialize, Serializer, ser};
@@ -448,6 +448,11 @@ fn world_of_everything<D: Blades>(n: usize) -> World<D> {
     let plastic = Material {
         yield_strain: 0.02,
         strength: 300.0,
+        // Calms the cube after its fall, so that no crack grows before rigid bodies press on each other.
+        damping: Damping {
+            mass: 10.0,
+            ..Damping::default()
+        },
         toughness: 30.0,
         ..Material::default()
     };

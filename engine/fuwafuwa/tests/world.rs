@@ -1,8 +1,9 @@
 //! Worlds: falling, rest, sleep, cuts, contacts, tears and access to pieces and surfaces.
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, DimVector, ElementId, Event, Facet, Material, MotionType, NodeId,
-    PieceView, RigidBody, Shape, SoftBody, Vec2, Vec3, Velocity, VoxelGrid, World, WorldConfig,
+    Blade, Damping, Dim, Dim2, Dim3, DimVector, ElementId, Event, Facet, Material, MotionType,
+    NodeId, PieceView, RigidBody, Shape, SoftBody, Vec2, Vec3, Velocity, VoxelGrid, World,
+    WorldConfig,
 };
 
 /// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
@@ -143,7 +144,7 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))
         .unwrap();
     let damped = Material {
-        damping: 0.3,
+        damping: Damping::at(0.3, 4.0),
         ..unbreakable()
     };
     let id = world.add_soft_body(ball::<D>(n, damped).translated(vector(0.0, 0.3, 0.0)));

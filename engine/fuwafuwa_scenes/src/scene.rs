@@ -10,6 +10,8 @@
 //!
 //! [[material]]                    # number 2
 //! young = 50000.0
+//! mass_damping = 10.0             # Rayleigh damping: mass term [1/s]
+//! stiffness_damping = 0.0001      # and stiffness term [s]
 //! colour = [90, 140, 220]         # red, green, blue, 0 to 255; by default from the renderer's palette
 //!
 //! [[body]]

@@ -2,7 +2,7 @@
 
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    DEFAULT_TICK, Dim, DimVector, MIN_SUBSTEPS, Material, RigidBody, Shape, SoftBody, VoxelGrid,
+    DEFAULT_TICK, Damping, Dim, DimVector, MIN_SUBSTEPS, Material, RigidBody, Shape, SoftBody, VoxelGrid,
     World, WorldConfig,
 };
 
@@ -21,7 +21,7 @@ pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> 
             poisson: scene.poisson.into(),
         },
         density: scene.density,
-        damping: 0.0,
+        damping: Damping::NONE,
         friction: scene.friction,
         strength: f32::INFINITY,
         ..Material::default()

@@ -1,6 +1,7 @@
 //! Checks of the mechanics against theory and reference solutions. The exit status is 1 if a check fails.
 
 mod beam;
+mod damping;
 mod doughnut;
 mod energy;
 mod free_fall;
@@ -48,6 +49,8 @@ enum Which {
     Sag,
     /// Graded bodies must oscillate like uniform ones and keep their energy.
     Period,
+    /// Bars and balls must have the damping ratio of Rayleigh's law, at every shape and resolution.
+    Damping,
     /// A free body must keep its angular momentum, and so must the halves of a body that was cut.
     Spin,
     /// Splits of nodes must preserve mass and momentum.
@@ -78,11 +81,12 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 15] = [
+    let checks: [(Which, Check); 16] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
         (Which::Period, period::check),
+        (Which::Damping, damping::check),
         (Which::Spin, spin::check),
         (Which::Momentum, momentum::check),
         (Which::Tear, tear::check),

@@ -4,8 +4,8 @@ use anyhow::Result;
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim, DimVector, Grading, Law, Material, NodeId, SoftBody, SoftBodyHandle, Vec3, Velocity,
-    VoxelGrid, World,
+    Damping, Dim, DimVector, Grading, Law, Material, NodeId, SoftBody, SoftBodyHandle, Vec3,
+    Velocity, VoxelGrid, World,
 };
 
 /// Returns a soft material without damping that does not tear.
@@ -16,7 +16,7 @@ pub fn material() -> Material {
             poisson: 0.3,
         },
         density: 100.0,
-        damping: 0.0,
+        damping: Damping::NONE,
         strength: f32::INFINITY,
         ..Material::default()
     }

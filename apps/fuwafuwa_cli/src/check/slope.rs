@@ -22,9 +22,6 @@ const FRICTIONS: [f32; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
 /// Slopes of the planes, as tangents of their angles. Blocks rest or slide on each of them. A block as high as
 /// it is long would topple beyond 1.
 const SLOPES: [f32; 3] = [0.1, 0.3, 0.7];
-/// Damping ratio of the soft blocks. With 0.08, the default, friction keeps a block chattering on the steepest
-/// slope: it slides 4 % too fast with a friction of 0.6, and creeps by a voxel a second with 0.8.
-const DAMPING: f32 = 0.3;
 /// Sliding time [s].
 const DURATION: f64 = 10.0;
 /// Maximum relative deviation of a sliding block's speed from theory.
@@ -127,7 +124,6 @@ pub fn slide<D: Dim>(rigid: bool, friction: f32, slope: f32, duration: f64) -> R
         let material = Material {
             elasticity: Elasticity::new(5e4, 0.3)?,
             friction,
-            damping: DAMPING,
             strength: f32::INFINITY,
             ..Material::default()
         };

@@ -4,7 +4,7 @@ use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, DimVector, Material, SoftBody, Vec2, Vec3, VoxelGrid, World,
+    Blade, Damping, Dim, Dim2, Dim3, DimVector, Material, SoftBody, Vec2, Vec3, VoxelGrid, World,
     WorldConfig,
 };
 
@@ -80,7 +80,7 @@ fn load<D: Dim>(n: usize, notch: Option<&Blade<D>>) -> Result<f64> {
     let size = [length * n, n, D::depth(n)];
     let grid = VoxelGrid::<D>::from_fn(size, 1.0 / n as f32, |_| 1)?;
     let mut material = Material {
-        damping: 0.3,
+        damping: Damping::at(0.3, 4.0),
         ..Material::default()
     };
     if notch.is_none() {

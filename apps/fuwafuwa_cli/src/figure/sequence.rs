@@ -5,8 +5,8 @@ use crate::report::Progress;
 use anyhow::Result;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Blade, DEFAULT_TICK, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, Vec2, Vec3, VoxelGrid,
-    World, WorldConfig,
+    Blade, DEFAULT_TICK, Damping, Dim2, Dim3, Material, RigidBody, Shape, SoftBody, Vec2, Vec3,
+    VoxelGrid, World, WorldConfig,
 };
 use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::worlds::{self, DrawPlane, DrawSpace};
@@ -24,7 +24,7 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
     const TICKS: usize = 200;
     let material = Material {
         elasticity: Elasticity::new(5000.0, 0.3)?,
-        damping: 0.5,
+        damping: Damping::at(0.5, 4.0),
         strength: 1000.0,
         toughness: 200.0,
         ..Material::default()
@@ -71,7 +71,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
     const ACROSS: usize = 24;
     let material = Material {
         elasticity: Elasticity::new(12_000.0, 0.3)?,
-        damping: 0.4,
+        damping: Damping::at(0.4, 4.0),
         strength: f32::INFINITY,
         ..Material::default()
     };

@@ -31,8 +31,8 @@ pub struct State<D: Dim> {
     /// Lattice points at which nodes were released recently, with the time until nodes around them can fail
     /// again.
     pub cooldowns: Cooldowns,
-    /// Position of each node [m], extrapolated by the damping lead. The elastic forces are evaluated at these
-    /// positions.
+    /// Position of each node [m], extrapolated by the largest stiffness damping of the materials. The elastic
+    /// forces of that material are evaluated at these positions.
     pub ahead: IndexVec<NodeId, Row>,
     /// Factor on the gravity of the world, default 1.
     pub gravity_scale: f32,

@@ -1,28 +1,35 @@
-//! Damping of the vibration of pieces, that is, of all motion relative to their rigid motion.
+//! Mass damping and drag: changes of the velocities of pieces.
 //!
-//! Two dampers are combined. First, the elastic forces are evaluated at extrapolated positions
-//! (Kelvin–Voigt). This damps fast modes, but the stability limit of the substep leaves slow modes almost
-//! undamped. Second, the velocities of each piece relax towards its rigid motion, at the rate 2 ζ ω of an
-//! oscillator with damping ratio ζ and angular frequency ω. This damps slow modes. Neither damper changes
-//! linear or angular momentum.
+//! The mass term of [`Damping`](crate::Damping) relaxes the velocities of each piece towards its rigid
+//! motion, at the rate α. The stiffness term acts through the elastic forces, which are evaluated at
+//! positions extrapolated by β; see `SoftBody::evaluate_forces`. Neither term changes the linear or angular
+//! momentum of a free piece.
 
 use crate::foundation::dim::Dim;
-use crate::foundation::ids::{IndexVec, PieceId};
+use crate::foundation::ids::{IndexVec, NodeId, PieceId};
 use crate::foundation::threads;
 use crate::math::row::Row;
 use crate::soft_body::SoftBody;
 use crate::soft_body::momentum::RigidMotion;
 use glam::DVec3;
 
-/// Motion of one piece, with the moments of its mass; all 0 for a sleeping piece.
+/// Factor on the mass of fixed nodes in the rigid motion of a piece. A piece with fixed nodes thereby moves
+/// as these nodes do, and turns only if they allow it. A thousandth of this factor would leave large pieces a
+/// motion of their own; a thousand times this factor would exceed the precision of the sums.
+const FIXED_WEIGHT: f64 = 1e9;
+
+/// Motion of one piece, with the moments of its mass; all 0 for a sleeping piece. In all fields but `mass`
+/// and `speed_squared`, the mass of fixed nodes is multiplied by [`FIXED_WEIGHT`].
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct PieceMotion {
     /// Mass [kg].
-    pub mass: f64,
+    mass: f64,
+    /// Mass with that of fixed nodes multiplied [kg].
+    weight: f64,
     /// Centre of mass [m].
     pub centre: DVec3,
     /// Velocity of the centre of mass [m/s].
-    pub velocity: DVec3,
+    velocity: DVec3,
     /// Mean of the squared speed over the mass of the piece [m²/s²].
     pub speed_squared: f64,
     /// Number of nodes; 0 for a sleeping piece.
@@ -37,13 +44,15 @@ pub struct PieceMotion {
 
 impl PieceMotion {
     /// Adds a node to the sums. `x` is the offset [m] of the node from the reference point of the piece.
-    /// [`PieceMotion::finish`] then converts the sums to moments about the centre of mass.
+    /// `weight` is its mass, multiplied if the node is fixed. [`PieceMotion::finish`] then converts the sums
+    /// to moments about the centre of mass.
     #[inline(always)]
-    fn add<D: Dim>(&mut self, x: DVec3, velocity: DVec3, mass: f64) {
-        let (moment, impulse) = (x * mass, velocity * mass);
+    fn add<D: Dim>(&mut self, x: DVec3, velocity: DVec3, mass: f64, weight: f64) {
+        let (moment, impulse) = (x * weight, velocity * weight);
         self.mass += mass;
+        self.weight += weight;
         self.nodes += 1;
-        self.speed_squared += impulse.dot(velocity);
+        self.speed_squared += mass * velocity.dot(velocity);
         match D::N {
             // In 2D, angular momentum has only a third component.
             2 => self.angular[2] += x[0] * impulse[1] - x[1] * impulse[0],
@@ -61,14 +70,14 @@ impl PieceMotion {
     /// Converts sums about the reference point `origin` [m] to means, and to moments about the centre of
     /// mass.
     fn finish(&mut self, origin: DVec3) {
-        let share = 1.0 / self.mass;
+        let share = 1.0 / self.weight;
         let (from, impulse) = (self.centre * share, self.velocity);
         self.velocity = impulse * share;
-        self.speed_squared *= share;
+        self.speed_squared /= self.mass;
         self.angular -= from.cross(impulse);
         for i in 0..3 {
             for j in i..3 {
-                self.spread[i][j] -= self.mass * from[i] * from[j];
+                self.spread[i][j] -= self.weight * from[i] * from[j];
                 self.spread[j][i] = self.spread[i][j];
             }
         }
@@ -78,13 +87,20 @@ impl PieceMotion {
     /// Returns the rigid motion that has the linear and angular momentum of the piece; zero for a sleeping
     /// piece.
     pub fn rigid(&self) -> RigidMotion {
+        self.rigid_with(self.velocity * self.weight, self.angular)
+    }
+
+    /// Returns the rigid motion that has a given linear momentum [kg m/s], and a given angular momentum about
+    /// the centre of mass [kg m²/s]; zero for a sleeping piece.
+    fn rigid_with(&self, linear: DVec3, angular: DVec3) -> RigidMotion {
         if self.nodes == 0 {
             return RigidMotion::default();
         }
+        let velocity = linear / self.weight;
         let squared = self.spread[0][0] + self.spread[1][1] + self.spread[2][2];
         let mut inertia = self.spread.map(|row| -row);
         (0..3).for_each(|k| inertia[k][k] += squared);
-        RigidMotion::of_spin(self.velocity, self.centre, &self.angular, &inertia)
+        RigidMotion::of_spin(velocity, self.centre, &angular, &inertia)
     }
 }
 
@@ -104,9 +120,11 @@ pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
             *origin = wide(body.state.position[nodes[0]]);
         }
         for (&id, (position, velocity, mass)) in nodes.iter().zip(body.states(nodes)) {
-            let x = wide(position) - *origin;
-            motion.add::<D>(x, wide(velocity), f64::from(mass));
-            motion.is_driven |= body.state.inverse_mass[id] == 0.0 && velocity != Row::ZERO;
+            let is_fixed = body.state.inverse_mass[id] == 0.0;
+            let mass = f64::from(mass);
+            let weight = if is_fixed { mass * FIXED_WEIGHT } else { mass };
+            motion.add::<D>(wide(position) - *origin, wide(velocity), mass, weight);
+            motion.is_driven |= is_fixed && velocity != Row::ZERO;
         }
         motions[piece] = motion;
     }
@@ -122,7 +140,8 @@ pub fn motions<D: Dim>(body: &SoftBody<D>) -> IndexVec<PieceId, PieceMotion> {
 /// are lost in one damping round.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct PieceDamping {
-    /// Damping of the vibration: of all motion relative to the rigid motion of the piece.
+    /// Damping of the vibration: of all motion relative to the rigid motion of the piece. 0 in a body with
+    /// materials of different mass damping, which [`apply_damping`] adds itself.
     pub vibration: f32,
     /// Damping of the angular velocity of the piece.
     pub spin: f32,
@@ -135,25 +154,38 @@ impl PieceDamping {
     pub fn over(self, duration: f32) -> Self {
         let share = |rate: f32| (rate * duration).min(1.0);
         Self {
-            vibration: share(self.vibration),
+            vibration: lost(self.vibration, duration),
             spin: share(self.spin),
             drag: share(self.drag),
         }
     }
 }
 
-/// Damps the velocities of a body, and stores the rigid motion of each piece in the cache. `damping` holds
-/// for each piece the fractions of velocity that the piece loses.
+/// Returns the fraction of a velocity that is lost in `duration` [s] at a damping rate [1/s]: 1 −
+/// exp(−x), with x = `rate` · `duration`. The error of the exponent is below x³/1500.
+fn lost(rate: f32, duration: f32) -> f32 {
+    // exp(−x) = (exp(x/16))⁻¹⁶, with the Taylor series of second order for exp(x/16).
+    let x = rate * duration / 16.0;
+    let kept = (0..4).fold(1.0 / (1.0 + x + 0.5 * x * x), |kept, _| kept * kept);
+    1.0 - kept
+}
+
+/// Damps the velocities of a body over `duration` [s], and stores the rigid motion of each piece in the
+/// cache. `damping` holds for each piece the fractions of velocity that the piece loses.
 pub fn apply_damping<D: Dim>(
     body: &mut SoftBody<D>,
     motions: &[PieceMotion],
     damping: &[PieceDamping],
+    duration: f32,
 ) {
     let rigid: Vec<RigidMotion> = motions.iter().map(PieceMotion::rigid).collect();
     body.cache.rigid.clear();
     body.cache
         .rigid
         .extend(rigid.iter().map(RigidMotion::roughly));
+    if body.mass_damping().is_none() {
+        damp_by_node(body, motions, &rigid, duration);
+    }
     if damping
         .iter()
         .all(|damping| *damping == PieceDamping::default())
@@ -200,6 +232,42 @@ pub fn apply_damping<D: Dim>(
             }
         }
     });
+}
+
+/// Applies the mass damping of the nodes of a body over `duration` [s], relative to the rigid motion of each
+/// piece.
+///
+/// Nodes of different damping lose a momentum that is not zero in sum. The piece gets it back as a rigid
+/// motion. With the rigid motions projected out of it, the damping matrix is symmetric and has no negative
+/// eigenvalue: the damping never adds energy.
+fn damp_by_node<D: Dim>(
+    body: &mut SoftBody<D>,
+    motions: &[PieceMotion],
+    rigid: &[RigidMotion],
+    duration: f32,
+) {
+    let state = &mut body.state;
+    let pieces = &body.topology.pieces;
+    let mut taken = vec![(DVec3::ZERO, DVec3::ZERO); motions.len()];
+    let free = |id: &&NodeId| state.inverse_mass[**id] != 0.0;
+    let free: Vec<NodeId> = body.cache.awake.iter().filter(free).copied().collect();
+    for &id in &free {
+        let piece = pieces.of_node(id).index();
+        let (position, velocity) = (state.position[id], &mut state.velocity[id]);
+        let vibration = wide(*velocity) - rigid[piece].at(position);
+        let change = vibration * -f64::from(lost(body.cache.mass_damping[id], duration));
+        let impulse = change * f64::from(state.mass[id]);
+        taken[piece].0 -= impulse;
+        taken[piece].1 -= (wide(position) - motions[piece].centre).cross(impulse);
+        *velocity += Row::from(change.as_vec3());
+    }
+    let returned = motions.iter().zip(taken);
+    let returned = returned.map(|(motion, (linear, angular))| motion.rigid_with(linear, angular));
+    let returned: Vec<RigidMotion> = returned.collect();
+    for &id in &free {
+        let change = returned[pieces.of_node(id).index()].at(state.position[id]);
+        state.velocity[id] += Row::from(change.as_vec3());
+    }
 }
 
 #[inline(always)]

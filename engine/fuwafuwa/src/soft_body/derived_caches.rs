@@ -4,6 +4,7 @@ use super::SoftBody;
 use super::body_topology::Topology;
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::NodeId;
+use crate::material::Material;
 
 impl<D: Dim> SoftBody<D> {
     pub(crate) fn make_room(&mut self) {
@@ -37,15 +38,21 @@ impl<D: Dim> SoftBody<D> {
 
     /// Mass of a node [kg], summed over the elements that carry it.
     pub(super) fn mass_of(&self, id: NodeId) -> f32 {
+        self.sum_over_carriers(id, &|material| f64::from(material.density)) as f32
+    }
+
+    /// Sums a quantity per volume over the part of the body whose mass a node carries. `density` returns the
+    /// quantity per volume of a material.
+    pub(super) fn sum_over_carriers(&self, id: NodeId, density: &dyn Fn(&Material) -> f64) -> f64 {
         let half = f64::from(self.topology.grid.voxel_size()) * 0.5;
-        let mut mass = 0.0;
+        let mut sum = 0.0;
         for (element, place) in self.topology.mesh.carriers_of(id) {
-            let density = f64::from(self.material(element).density);
+            let density = density(self.material(element));
             let child = half * f64::from(element.cell.width());
             let volume = (0..D::N).fold(1.0, |volume, _| volume * child);
-            mass += density * volume * self.topology.mesh.element_class(element).volumes[place];
+            sum += density * volume * self.topology.mesh.element_class(element).volumes[place];
         }
-        mass as f32
+        sum
     }
 
     /// Inverse mass of a node [1/kg]; 0 while the node is fixed or sleeps.

@@ -182,8 +182,9 @@ impl<D: Dim> ElementBatches<D> {
         self.flows.iter().any(Option::is_some)
     }
 
-    /// Computes the forces of all awake elements at the given node positions [m].
-    pub fn evaluate(&mut self, position: &[Row]) {
+    /// Computes the forces of all awake elements. `positions[number - 1]` are the node positions [m] for the
+    /// elements of material `number`.
+    pub fn evaluate(&mut self, positions: &[&[Row]]) {
         #[cfg(feature = "parallel")]
         if self.batches.len() >= MIN_PARALLEL_BATCHES && rayon::current_num_threads() > 1 {
             use rayon::prelude::*;
@@ -191,14 +192,14 @@ impl<D: Dim> ElementBatches<D> {
             let groups = groups.into_par_iter().with_min_len(8);
             groups.for_each_init(
                 || [Scratch::EMPTY; GROUP],
-                |scratch, group| evaluate_best::<D>(group, position, scratch),
+                |scratch, group| evaluate_best::<D>(group, positions, scratch),
             );
             return;
         }
         let mut kept = self.scratch.take();
         let scratch = kept.get_or_insert_with(|| Box::new([Scratch::EMPTY; GROUP]));
         for group in self.groups() {
-            evaluate_best::<D>(group, position, scratch);
+            evaluate_best::<D>(group, positions, scratch);
         }
         self.scratch = kept;
     }
@@ -420,11 +421,11 @@ mod tests {
             position[id.index()][..D::N].copy_from_slice(&bent[..D::N]);
         }
         for _ in 0..3 {
-            wide.evaluate(&position);
+            wide.evaluate(&[&position]);
             let mut scratch = [Scratch::EMPTY; GROUP];
             for group in other.groups() {
                 let scratch = &mut scratch;
-                simd.vectorize(|| evaluate_group::<D, _>(simd, group, &position, scratch));
+                simd.vectorize(|| evaluate_group::<D, _>(simd, group, &[&position], scratch));
             }
         }
         for (id, _) in mesh.nodes() {
@@ -474,7 +475,7 @@ mod tests {
                 let bent = [x - bend * y * y, bend * x + y, z + bend * x * y, 0.0];
                 position[id.index()][..D::N].copy_from_slice(&bent[..D::N]);
             }
-            batches.evaluate(&position);
+            batches.evaluate(&[&position]);
         };
         evaluate(&mut batches, 0.1);
         let sleeps = |id: &ElementId| id.0 % 4 < 3;

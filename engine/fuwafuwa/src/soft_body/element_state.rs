@@ -232,6 +232,7 @@ mod tests {
     use crate::material::Material;
     use crate::math::rotation::Rotation;
     use crate::soft_body::element_law::forces;
+    use crate::soft_body::rayleigh::Damping;
     use crate::topology::grid::VoxelGrid;
     use glam::{Vec2, Vec3};
 
@@ -341,7 +342,7 @@ mod tests {
     #[test]
     fn energy_is_conserved_without_damping() {
         let calm = Material {
-            damping: 0.0,
+            damping: Damping::NONE,
             strength: f32::INFINITY,
             ..Material::default()
         };

@@ -27,7 +27,7 @@ impl<D: Dim> SoftBody<D> {
             self.reset_rotations(&all);
         }
         let before = self.velocities_of_slowed();
-        self.state.batches.evaluate(&self.state.ahead);
+        self.evaluate_forces(duration);
         let gravity = Row::from(gravity) * self.state.gravity_scale;
         let update = VelocityUpdate {
             nodes: &self.cache.awake,
@@ -43,6 +43,31 @@ impl<D: Dim> SoftBody<D> {
             let velocity = &mut self.state.velocity[id];
             *velocity = before + (*velocity - before) * share;
         }
+    }
+
+    /// Computes the elastic forces, for a substep of `duration` [s]. The forces of each material are evaluated
+    /// at positions that are extrapolated by its stiffness damping (Kelvin–Voigt). `ahead` has the positions
+    /// for the largest stiffness damping; the others lie between these and the present positions.
+    fn evaluate_forces(&mut self, duration: f32) {
+        let (leads, longest) = self.leads(duration);
+        let ahead = self.state.ahead.as_slice();
+        let mut shorter: Vec<(f32, Vec<Row>)> = Vec::new();
+        for &lead in leads.iter().filter(|&&lead| lead < longest) {
+            if shorter.iter().all(|&(other, _)| other != lead) {
+                let mut rows = self.state.position.as_slice().to_vec();
+                for &id in &self.cache.awake {
+                    let row = &mut rows[id.index()];
+                    *row += (ahead[id.index()] - *row) * (lead / longest);
+                }
+                shorter.push((lead, rows));
+            }
+        }
+        let of_lead = |lead: &f32| {
+            let found = shorter.iter().find(|(other, _)| other == lead);
+            found.map_or(ahead, |(_, rows)| rows)
+        };
+        let positions: Vec<&[Row]> = leads.iter().map(of_lead).collect();
+        self.state.batches.evaluate(&positions);
     }
 
     /// Adds to velocities the change that an acceleration field [m/s²] causes in `duration` [s].

@@ -154,6 +154,7 @@ impl<D: Dim> SoftBody<D> {
         let fresh: Vec<Point> = fresh.map(|element| element.cell.at).collect();
         self.expose(&fresh);
         self.weigh(touched);
+        self.update_mass_damping(touched);
         let now = self.free_by_piece(touched.iter().copied());
         for nodes in self.pieces_in(&now) {
             let piece = self.topology.pieces.of_node(nodes[0]);

@@ -13,6 +13,7 @@ use crate::math::rotation::Rotation;
 use crate::rigid_body::solid::Bounds;
 use crate::rigid_body::{RigidBody, RigidBodyRef, RigidState};
 use crate::soft_body::SoftBody;
+use crate::soft_body::rayleigh::Damping;
 use std::ops::Index;
 
 impl<D: Dim> World<D> {
@@ -25,6 +26,21 @@ impl<D: Dim> World<D> {
         // The body may have fallen asleep in another world.
         self.wake_body(id);
         id
+    }
+
+    /// Returns the Rayleigh damping that acts in a soft body, for each of its materials: that of the material,
+    /// with the stiffness damping limited to the largest that the substep allows.
+    ///
+    /// The limit is 0.7 (4/Ω² − h²) / 2h, with the substep h = tick / [`substeps`](World::substeps) and the
+    /// angular frequency Ω of the breathing mode of a single voxel. In N dimensions, Ω² = 4 (N λ + 2µ) / ρs²,
+    /// with Lamé's parameters λ and µ, the density ρ and the voxel size s. More substeps, larger voxels or a
+    /// softer material raise the limit.
+    ///
+    /// # Errors
+    /// [`Error::InvalidHandle`] if the handle is stale.
+    pub fn acting_damping(&self, body: SoftBodyHandle) -> Result<Vec<Damping>, Error> {
+        let duration = self.config.tick / self.substeps() as f32;
+        Ok(self.bodies.get(body)?.acting_damping(duration).collect())
     }
 
     /// Adds a rigid body.

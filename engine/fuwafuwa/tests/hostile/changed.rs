@@ -18,7 +18,7 @@ fn replaced_body_may_have_fewer_nodes_and_pieces() {
 fn sleeper() -> World<Dim2> {
     let mut world = world::<Dim2>();
     let damped = Material {
-        damping: 0.5,
+        damping: Damping::at(0.5, 4.0),
         ..Material::default()
     };
     let grid = VoxelGrid::ball(16, 1.0).unwrap();
@@ -187,7 +187,7 @@ fn stale_handle_is_rejected() {
 fn removal_wakes_only_bodies_in_contact() {
     let mut world = world::<Dim2>();
     let damped = Material {
-        damping: 0.5,
+        damping: Damping::at(0.5, 4.0),
         ..Material::default()
     };
     let cube = |at: Vec2| {

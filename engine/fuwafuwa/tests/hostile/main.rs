@@ -5,8 +5,9 @@ mod changed;
 mod quarantine;
 
 use fuwafuwa::{
-    Blade, Dim, Dim2, Dim3, DimVector, Event, Grading, Law, Material, MotionType, ObjectRef,
-    PieceId, RigidBody, Rotation, Shape, SoftBody, Vec2, Vec3, VoxelGrid, World, WorldConfig,
+    Blade, Damping, Dim, Dim2, Dim3, DimVector, Event, Grading, Law, Material, MotionType,
+    ObjectRef, PieceId, RigidBody, Rotation, Shape, SoftBody, Vec2, Vec3, VoxelGrid, World,
+    WorldConfig,
 };
 
 fn floor<D: Dim>() -> Shape<D> {
@@ -239,6 +240,7 @@ fn unused_material_has_no_effect() {
             poisson: 0.3,
         },
         friction: 2.0,
+        damping: Damping::between(0.9, 10.0, 50.0),
         ..Material::default()
     };
     let states_with = |materials: &[Material]| {

@@ -5,7 +5,7 @@ use super::shapes::{BallText, BoxText, CapsuleText, HalfSpaceText};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::{Layers, Material};
+use fuwafuwa::{Damping, Layers, Material};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -19,7 +19,12 @@ pub struct MaterialText {
     pub poisson: Option<f64>,
     /// Density [kg/m³].
     pub density: Option<f32>,
-    /// Damping ratio.
+    /// Mass damping [1/s]: damps slow vibrations most.
+    pub mass_damping: Option<f32>,
+    /// Stiffness damping [s]: damps fast vibrations most.
+    pub stiffness_damping: Option<f32>,
+    /// Damping ratio at 4 Hz by mass damping, from scenes of version 0.2. Excludes `mass_damping` and
+    /// `stiffness_damping`.
     pub damping: Option<f32>,
     /// Coulomb friction between pieces.
     pub friction: Option<f32>,
@@ -227,7 +232,13 @@ impl MaterialText {
                 poisson: self.poisson.unwrap_or(usual.elasticity.poisson),
             },
             density: self.density.unwrap_or(usual.density),
-            damping: self.damping.unwrap_or(usual.damping),
+            damping: match self.damping {
+                Some(ratio) => Damping::at(ratio, 4.0),
+                None => Damping {
+                    mass: self.mass_damping.unwrap_or(usual.damping.mass),
+                    stiffness: self.stiffness_damping.unwrap_or(usual.damping.stiffness),
+                },
+            },
             friction: self.friction.unwrap_or(usual.friction),
             rolling_resistance: self.rolling_resistance.unwrap_or(usual.rolling_resistance),
             strength: borne(self.strength, usual.strength),
@@ -247,7 +258,9 @@ impl MaterialText {
             young: Some(young),
             poisson: Some(poisson),
             density: Some(material.density),
-            damping: Some(material.damping),
+            mass_damping: Some(material.damping.mass),
+            stiffness_damping: Some(material.damping.stiffness),
+            damping: None,
             friction: Some(material.friction),
             rolling_resistance: (material.rolling_resistance
                 != Material::default().rolling_resistance)
@@ -264,6 +277,12 @@ impl MaterialText {
 
     /// Checks the ranges of the material's fields.
     pub(super) fn check(&self) -> Result<(), FieldError> {
+        let is_doubled = self.damping.is_some()
+            && (self.mass_damping.is_some() || self.stiffness_damping.is_some());
+        if is_doubled {
+            let reason = "excludes `mass_damping` and `stiffness_damping`";
+            return Err(FieldError::new("damping", reason.to_owned()));
+        }
         let checked = self.material().check();
         checked.map_err(|error| FieldError::engine("young", error))
     }

@@ -146,12 +146,13 @@ impl Batch {
     }
 }
 
-/// Evaluates the forces of the awake batches of a group at the given node positions [m].
+/// Evaluates the forces of the awake batches of a group. `positions[number - 1]` are the node positions [m]
+/// for the elements of material `number`.
 #[inline(always)]
 pub fn evaluate_group<D: Dim, S: Simd>(
     simd: S,
     group: Group,
-    position: &[Row],
+    positions: &[&[Row]],
     scratch: &mut [Scratch; GROUP],
 ) {
     let Group {
@@ -166,6 +167,7 @@ pub fn evaluate_group<D: Dim, S: Simd>(
             continue;
         }
         let (key, class_data) = (batch.key, batch.class_data(&shared));
+        let position = positions[key.material as usize - 1];
         let view = batch.view::<D>(&shared, all, first);
         match (key.kind, class_data) {
             (BatchKind::Plain, _) => plain_gradient::<D, S>(simd, position, &view, scratch),
@@ -214,6 +216,6 @@ pub fn evaluate_group<D: Dim, S: Simd>(
 }
 
 /// Evaluates the forces of a group with the widest SIMD lanes of the machine.
-pub fn evaluate_best<D: Dim>(group: Group, position: &[Row], scratch: &mut [Scratch; GROUP]) {
-    on_widest_lanes!(simd => evaluate_group::<D, _>(simd, group, position, scratch));
+pub fn evaluate_best<D: Dim>(group: Group, positions: &[&[Row]], scratch: &mut [Scratch; GROUP]) {
+    on_widest_lanes!(simd => evaluate_group::<D, _>(simd, group, positions, scratch));
 }
