@@ -1,8 +1,8 @@
 //! Sleep: slow bodies that nothing stops go on, and sleepers wake under slow pressure.
 
 use fuwafuwa::{
-    Dim, Dim2, Dim3, DimVector, Event, Material, RigidBody, Shape, SoftBody, Vec3, Velocity,
-    VoxelGrid, World, WorldConfig,
+    Damping, Dim, Dim2, Dim3, DimVector, Event, Material, RigidBody, Shape, SoftBody, Vec3,
+    Velocity, VoxelGrid, World, WorldConfig,
 };
 
 fn vector<V: DimVector>(x: f32, y: f32, z: f32) -> V {
@@ -18,7 +18,7 @@ fn config<D: Dim>(gravity: f32) -> WorldConfig<D> {
 
 fn damped() -> Material {
     Material {
-        damping: 0.5,
+        damping: Damping::at(0.5, 8.0),
         strength: f32::INFINITY,
         ..Material::default()
     }
