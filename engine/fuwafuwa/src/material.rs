@@ -19,6 +19,10 @@ pub struct Material {
     /// Coulomb friction coefficient between pieces and between bodies, 0 to 2; usually about 0.4. A contact
     /// between two soft surfaces uses the mean of their coefficients. A contact with a rigid body uses the
     /// [friction of the rigid body](crate::RigidBody::friction) alone.
+    ///
+    /// Blocks slide and rest as Coulomb's law says. A soft block with little damping may flutter and hop where
+    /// friction takes up most of its weight, for example on a slope of 0.7 with a friction of 0.8; see
+    /// `fuwafuwa check slope`.
     pub friction: f32,
     /// Rolling resistance of pieces of a single voxel: decay rate of their angular velocity while they touch
     /// something [1/s], 0 to 1000, default 20. Other pieces touch such a crumb as a ball, but it stands for an

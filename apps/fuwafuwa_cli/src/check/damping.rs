@@ -24,12 +24,17 @@ const MASS: Damping = Damping {
     mass: 0.8,
     stiffness: 0.0,
 };
+/// Mass damping alone [1/s] for the coarsest square, whose mesh passes energy to other modes within ten periods.
+const MORE_MASS: Damping = Damping {
+    mass: 4.0,
+    stiffness: 0.0,
+};
 /// Stiffness damping alone [s] beyond the limit of every bar: the law then uses the damping that
 /// `World::acting_damping` returns.
 const TOO_STIFF: Damping = stiffness(0.1);
 /// Bars: voxels along the length, voxels across, mode, and damping. All are 1 m long.
 const BARS: [(usize, usize, Mode, Damping); 29] = [
-    (16, 16, Mode::Square, MASS),
+    (16, 16, Mode::Square, MORE_MASS),
     (32, 32, Mode::Square, MASS),
     (64, 64, Mode::Square, MASS),
     (128, 128, Mode::Square, MASS),
