@@ -81,18 +81,8 @@ pub fn find_dynamic<D: Dim>(
             if !is_once || is_apart || other == own || is_idle || !rigid.meets_rigid(against) {
                 continue;
             }
-            let both = [own, other];
-            let margin = margin(rigid, duration) + motion_margin(against, duration);
-            touch::<D>(
-                both,
-                [rigid, against],
-                margin,
-                known,
-                rest,
-                duration,
-                found,
-                &mut hits,
-            );
+            let (slots, both) = ([own, other], [rigid, against]);
+            touch::<D>(slots, both, known, rest, duration, found, &mut hits);
         }
     }
     hits
@@ -113,13 +103,13 @@ fn motion_margin(rigid: &RigidState, duration: f32) -> f32 {
 fn touch<D: Dim>(
     slots: [RigidSlot; 2],
     both: [&RigidState; 2],
-    margin: f32,
     known: &RigidContactPoints,
     rest: RestSpeeds,
     duration: f32,
     found: &mut Vec<DynamicContact>,
     hits: &mut Vec<RigidSlot>,
 ) {
+    let margin = margin(both[0], duration) + motion_margin(both[1], duration);
     let manifold = both[0].shape().manifold(both[1].shape(), margin);
     let size = both[0].shape().inradius().min(1.0);
     let waking = rest.wake_speed(both[0].rest_size());
