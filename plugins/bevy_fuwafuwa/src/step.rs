@@ -3,8 +3,8 @@
 use crate::convert::bevy_vector;
 use crate::dimension::Dimension;
 use crate::message::{
-    ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, JointBroke, NodeSplit,
-    PieceDetached, Quarantined, Removed, SensorEntered, SensorExited, WokeUp,
+    ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, JointBroke, LeftRange, NodeSplit,
+    Overlapped, PieceDetached, Quarantined, Removed, SensorEntered, SensorExited, WokeUp,
 };
 use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;
@@ -21,6 +21,8 @@ pub struct Writers<'w> {
     fell_asleep: MessageWriter<'w, FellAsleep>,
     woke_up: MessageWriter<'w, WokeUp>,
     quarantined: MessageWriter<'w, Quarantined>,
+    overlapped: MessageWriter<'w, Overlapped>,
+    left_range: MessageWriter<'w, LeftRange>,
     contact_started: MessageWriter<'w, ContactStarted>,
     contact_ended: MessageWriter<'w, ContactEnded>,
     sensor_entered: MessageWriter<'w, SensorEntered>,
@@ -161,6 +163,18 @@ impl Writers<'_> {
             Event::RigidBodyRemoved { body } => {
                 let body = world.entity_of_rigid_body(body)?;
                 self.removed.write(Removed { body, piece: None });
+            }
+            Event::Overlapped { pair, depth } => {
+                let [(first, own), (second, other)] = both(pair)?;
+                self.overlapped.write(Overlapped {
+                    pair: [first, second],
+                    pieces: [own, other],
+                    depth,
+                });
+            }
+            Event::LeftRange { object } => {
+                let (body, piece) = of(object)?;
+                self.left_range.write(LeftRange { body, piece });
             }
             Event::Quarantined { body, piece } => {
                 let body = of_body(body)?;

@@ -3,13 +3,16 @@
 mod beam;
 mod doughnut;
 mod energy;
+mod far;
 mod momentum;
 mod motion;
+mod overlap;
 mod parallel;
 mod patch;
 mod period;
 mod pile;
 mod random;
+mod reaction;
 mod sag;
 mod spin;
 mod stack;
@@ -55,6 +58,12 @@ enum Which {
     Stack,
     /// A ring squeezed shut must not pass through itself.
     Doughnut,
+    /// Far from the origin, bodies must keep their shape, up to the distance at which they are refused.
+    Far,
+    /// Supports must carry the weight of sleeping bodies, and stretched bars must pull as in theory.
+    Reaction,
+    /// Objects placed inside each other must come apart.
+    Overlap,
     /// All checks.
     All,
 }
@@ -63,7 +72,7 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 10] = [
+    let checks: [(Which, Check); 13] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
@@ -74,6 +83,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         (Which::Pile, pile::check),
         (Which::Stack, stack::check),
         (Which::Doughnut, doughnut::check),
+        (Which::Far, far::check),
+        (Which::Reaction, reaction::check),
+        (Which::Overlap, overlap::check),
     ];
     let mut outcomes = Vec::new();
     for (name, check) in checks {
