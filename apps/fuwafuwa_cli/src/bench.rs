@@ -260,7 +260,7 @@ fn pushed_ball<D: Dim>(n: usize) -> Result<Measure> {
     world.add_soft_body(SoftBody::new(
         VoxelGrid::ball(n, 1.0)?,
         &[Material::default()],
-    )?);
+    )?)?;
     let above = |height: f32| D::Vector::from_vec3(Vec3::new(0.5, height, 0.5));
     let hand = world.add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at(above(1.2)))?;
     let mut times = Vec::new();

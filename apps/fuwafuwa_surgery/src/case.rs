@@ -158,7 +158,7 @@ impl Case {
         })?;
         let top = Shape::half_space(Vec3::Y, Vec3::ZERO);
         world.add_rigid_body(RigidBody::fixed(top).with_friction(0.6))?;
-        let organ = world.add_soft_body(body);
+        let organ = world.add_soft_body(body)?;
         let (around, above) = (0.35 * longest, 0.6 * longest);
         let room = [
             Vec3::new(corner.x - around, 0.0, corner.z - around),

@@ -72,7 +72,7 @@ fn cut(voxels: usize, max_substeps: u32) -> Result<(Vec<f64>, String), Box<dyn E
         u8::from(((at - middle) * scale).length_squared() < 1.0)
     })?;
     let solid = grid.solid_count();
-    let organ = world.add_soft_body(SoftBody::new(grid, &[organ()])?);
+    let organ = world.add_soft_body(SoftBody::new(grid, &[organ()])?)?;
     let holder = RigidBody::kinematic(Shape::ball(0.01)).at(Vec3::new(0.081, 0.14, 0.08));
     let holder = world.add_rigid_body(holder.with_sensor(true))?;
     let edge = [-0.08, 0.08].map(|z| Vec3::new(0.0, 0.0, z));

@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let ball = world.add_soft_body(SoftBody::new(
         VoxelGrid::ball(64, 1.0)?,
         &[Material::default()],
-    )?);
+    )?)?;
     // Stiffer coupling than the default. With the default, the hand would get stuck halfway through the disc.
     let strong = MotionType::Coupled {
         mass: 2.0,

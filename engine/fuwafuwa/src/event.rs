@@ -1,6 +1,8 @@
 //! Events of a tick and the report of a step.
 
-use crate::foundation::arena::{JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::arena::{
+    GripHandle, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle,
+};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::PieceId;
@@ -78,6 +80,11 @@ pub enum Event<D: Dim> {
         /// Handle of the broken joint.
         joint: JointHandle,
     },
+    /// A grip was removed, because its body or its carrier was removed.
+    GripEnded {
+        /// Handle of the removed grip.
+        grip: GripHandle,
+    },
     /// A piece fell asleep.
     FellAsleep {
         /// Body of the piece.
@@ -108,6 +115,22 @@ pub enum Event<D: Dim> {
     RigidBodyRemoved {
         /// Handle of the removed rigid body.
         body: RigidBodyHandle,
+    },
+    /// Two objects were placed inside each other, by more than a voxel. They are moved apart at 0.5 m/s,
+    /// without contacts between them, and stay awake until then. If neither can be moved, they stay as they
+    /// are. Sent once, in the first tick after one of the objects was placed.
+    Overlapped {
+        /// The objects, in ascending order; the first one is a piece.
+        pair: [ObjectRef; 2],
+        /// Depth of the overlap [m].
+        depth: f32,
+    },
+    /// An object moved out of the range in which single precision is enough. A piece is simulated further, but
+    /// its shape gets coarser; see [`SoftBody::range`](crate::SoftBody::range). A rigid body stops at its
+    /// position at the start of the tick, within 10⁶ m of the origin. Sent once each time an object leaves.
+    LeftRange {
+        /// The piece or rigid body.
+        object: ObjectRef,
     },
     /// A piece became non-finite or too fast. The engine froze the piece permanently, so that it cannot
     /// affect the rest of the world.
@@ -145,11 +168,14 @@ hash_state! {
         SensorExited { sensor, object },
         Cut { knife, body, point, area, work },
         JointBroke { joint },
+        GripEnded { grip },
         FellAsleep { body, piece },
         WokeUp { body, piece },
         PieceRemoved { body, piece },
         SoftBodyRemoved { body },
         RigidBodyRemoved { body },
+        Overlapped { pair, depth },
+        LeftRange { object },
         Quarantined { body, piece },
         ImpactSlowed { body, piece, share },
     }
@@ -185,9 +211,17 @@ pub struct Contact<D: Dim> {
     /// Sum of the magnitudes of the normal impulses over all contact points and substeps [N s]. Divided by
     /// the tick length [s], this sum is the mean normal force [N]. Friction is not included.
     pub impulse: f32,
+    /// Mean contact force on the first object during the tick, with friction [N]. The force on the second
+    /// object is opposite. If both objects sleep or stand still, the mean over the time in which they settled.
+    pub force: D::Vector,
+    /// Torque of the contact forces on the first object about `point` [N m]; in 2D positive is
+    /// counterclockwise.
+    pub torque: D::Angular,
 }
 
-hash_state! { [D: Dim] struct Contact<D> { pair, point, normal, speed, impulse } }
+hash_state! {
+    [D: Dim] struct Contact<D> { pair, point, normal, speed, impulse, force, torque }
+}
 
 impl<D: Dim> Contact<D> {
     /// Returns the partner of a selected object in this contact. Returns `None` if neither object of the pair

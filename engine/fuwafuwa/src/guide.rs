@@ -5,7 +5,7 @@
 //! default.
 //!
 //! 1. [`first_body`]: five minutes to a falling ball
-//! 2. [`tasks`]: ten common tasks in 2D and in 3D
+//! 2. [`tasks`]: eleven common tasks in 2D and in 3D
 //! 3. [`materials`]: stiffness, density and strength; real values, and values for games
 //! 4. [`acting`]: impulses, velocities, fields, hands, cuts
 //! 5. [`asking`]: events, sensors, layers, rays, overlap tests, strain and energy

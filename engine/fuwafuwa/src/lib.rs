@@ -69,7 +69,9 @@ pub mod snapshot;
 pub use contact::joint::{Joint, JointAnchor, JointKind, JointRef};
 pub use error::Error;
 pub use event::{Contact, Event, StepReport};
-pub use foundation::arena::{JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
+pub use foundation::arena::{
+    GripHandle, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle,
+};
 pub use foundation::dim::{Dim, Dim2, Dim3, DimAngular, DimVector, Point};
 pub use foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 pub use fracture::blade::{Blade, CutReport};
@@ -90,12 +92,13 @@ pub use soft_body::element_law::{Elasticity, Law};
 pub use soft_body::element_state::{ElementState, Energy};
 pub use soft_body::momentum::Momentum;
 pub use soft_body::rayleigh::Damping;
+pub use soft_body::region_sums::RegionSums;
 pub use soft_body::view::{ElementView, Facet, Outline, PieceView};
 pub use topology::cell_hierarchy::Grading;
 pub use topology::changes::{Bookmark, Changes};
 pub use topology::grid::{MAX_EXTENT, MAX_VOXELS, VOXEL_SIZES, VoxelGrid};
 pub use world::{
-    AfterSubstep, BodyHandle, DEFAULT_SUBSTEPS, DEFAULT_TICK, Hooks, MAX_TICK, MIN_SUBSTEPS,
-    MIN_TICK, PieceSize, Removable, Removed, Substep, World, World2, World3, WorldConfig,
-    field_around,
+    AfterSubstep, BodyHandle, DEFAULT_SUBSTEPS, DEFAULT_TICK, Grip, GripDrive, GripRef, Hooks,
+    MAX_TICK, MIN_SUBSTEPS, MIN_TICK, PieceSize, ReactionForce, Removable, Removed, Substep, World,
+    World2, World3, WorldConfig, field_around,
 };

@@ -121,7 +121,7 @@ impl Material {
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
     /// world.add_rigid_body(RigidBody::fixed(Shape::half_space(Vec2::Y, Vec2::ZERO)))?;
     /// let block = SoftBody::new(VoxelGrid::cube(12, 1.0)?, &[Material::clay()])?;
-    /// let block = world.add_soft_body(block);
+    /// let block = world.add_soft_body(block)?;
     /// let hand = RigidBody::coupled(Shape::ball(0.2)).at(Vec2::new(0.5, 1.2));
     /// let hand = world.add_rigid_body(hand)?;
     /// for height in [0.6, 1.6] {

@@ -94,7 +94,7 @@ impl<D: Dim> World<D> {
     ///
     /// let mut world = World::new(WorldConfig::default())?;
     /// let grid = VoxelGrid::<Dim3>::ball(16, 1.0)?;
-    /// let ball = world.add_soft_body(SoftBody::new(grid, &[Material::default()])?);
+    /// let ball = world.add_soft_body(SoftBody::new(grid, &[Material::default()])?)?;
     /// let down = Ray::new(Vec3::new(0.5, 3.0, 0.5), Vec3::NEG_Y);
     /// let hit = world.ray_cast(down, 10.0, QueryFilter::default());
     /// let hit = hit.expect("the ball is below");

@@ -24,7 +24,7 @@ use crate::rigid_body::shape::Shape;
 use crate::rigid_body::solid::Solid;
 use inertia::Inertia;
 pub use reach::FARTHEST;
-pub(crate) use reach::is_within_reach;
+pub(crate) use reach::{is_within_reach, range_of, require_in_range};
 pub use rigid_body_ref::RigidBodyRef;
 pub(crate) use rigid_state::{ReactionSum, RigidBodies, RigidState};
 pub(crate) use rigid_state_check::{check_friction, check_restitution};

@@ -9,6 +9,7 @@ pub(crate) mod fast_motion;
 pub mod momentum;
 pub mod plasticity;
 pub mod rayleigh;
+pub mod region_sums;
 pub mod view;
 
 mod access;
@@ -207,6 +208,14 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
+    /// Returns whether a node is fixed, by [`SoftBody::fix_node`] or by a [grip](crate::Grip).
+    ///
+    /// # Panics
+    /// If the id was never used.
+    pub fn is_fixed(&self, id: NodeId) -> bool {
+        self.state.fixed[id]
+    }
+
     /// Voxel grid from which the body was made.
     pub fn grid(&self) -> &VoxelGrid<D> {
         &self.topology.grid
@@ -285,7 +294,7 @@ impl<D: Dim> SoftBody<D> {
         Ok(())
     }
 
-    /// Elastic force [N] on a node in the last substep.
+    /// Elastic force [N] on a node in the last substep in which the body was awake.
     ///
     /// # Panics
     /// If the id was never used.

@@ -7,7 +7,10 @@ mod contact_events;
 mod contents;
 mod cuts;
 mod fast_impacts;
+mod grips;
 mod hooks;
+mod overlaps;
+mod reactions;
 mod removal;
 mod sleep;
 #[cfg(feature = "serde")]
@@ -36,7 +39,12 @@ use crate::world::sleep::{
 };
 pub use body_handle::{BodyHandle, Removable};
 pub use config::{DEFAULT_SUBSTEPS, DEFAULT_TICK, MAX_TICK, MIN_SUBSTEPS, MIN_TICK, WorldConfig};
+use contact_events::SettlingContact;
+use grips::Grips;
+pub use grips::{Grip, GripDrive, GripRef};
 pub use hooks::{AfterSubstep, Hooks, Substep, field_around};
+use overlaps::Overlaps;
+pub use reactions::ReactionForce;
 pub use removal::{PieceSize, Removed};
 #[cfg(feature = "serde")]
 pub(crate) use stored_world::StoredWorld;
@@ -54,13 +62,18 @@ pub struct World<D: Dim> {
     pub(crate) rigids: RigidBodies,
     joints: Joints,
     knives: Knives,
+    grips: Grips,
     ticks: u64,
     nearby: Nearby,
     events: Vec<Event<D>>,
     /// Contacts of the last tick, ascending by their pair of objects.
     touching: Vec<Contact<D>>,
+    /// Mean forces of contacts between objects that settle, ascending by their pair of objects.
+    settling: Vec<SettlingContact<D>>,
     /// Pairs of a sensor and an object inside it at the end of the last tick, in ascending order.
     inside: Vec<(RigidBodyHandle, ObjectRef)>,
+    /// Objects that were placed inside each other.
+    overlaps: Overlaps,
     #[cfg_attr(feature = "serde", serde(skip))]
     contacts: Contacts,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -78,7 +91,8 @@ pub type World3 = World<Dim3>;
 
 hash_state! {
     [D: Dim] struct World<D> {
-        config, bodies, rigids, joints, knives, ticks, nearby, events, touching, inside,
+        config, bodies, rigids, joints, knives, grips, ticks, nearby, events, touching,
+        settling, inside, overlaps,
     } skip { contacts, query_cache, slowed }
 }
 
@@ -96,11 +110,14 @@ impl<D: Dim> World<D> {
             rigids: RigidBodies::default(),
             joints: Joints::default(),
             knives: Knives::default(),
+            grips: Grips::default(),
             ticks: 0,
             nearby: Nearby::default(),
             events: Vec::new(),
             touching: Vec::new(),
+            settling: Vec::new(),
             inside: Vec::new(),
+            overlaps: Overlaps::default(),
             contacts: Contacts::default(),
             query_cache: QueryCache::default(),
             slowed: SlowedPieces::default(),
@@ -149,11 +166,13 @@ impl<D: Dim> World<D> {
                 self.damp();
             }
             self.integrate_velocities(duration, hooks);
+            let gripped = self.apply_grips(duration);
             self.nearby.follow(&self.bodies, &self.rigids, duration);
             self.limit_fast_motion(duration, &mut report);
             let hits = self.solve_constraints(duration);
             self.integrate_positions(duration);
             self.wake(&hits.pieces);
+            self.wake(&gripped);
             self.wake_rigids(&hits.rigids);
             if let Some(after) = &mut hooks.after_substep {
                 after(&Substep::new(substep, duration, &self.rigids));
@@ -191,12 +210,17 @@ impl<D: Dim> World<D> {
         for rigid in self.rigids.iter_mut() {
             rigid.start_tick(self.config.tick);
         }
+        self.update_grips();
+        self.separate_overlaps();
         self.nearby.start_tick(&self.bodies, self.config.tick);
     }
 
     fn end_tick(&mut self) {
-        for rigid in self.rigids.iter_mut() {
-            rigid.end_tick();
+        for (id, rigid) in self.rigids.entries_mut() {
+            if rigid.end_tick() {
+                let object = ObjectRef::RigidBody(id);
+                self.events.push(Event::LeftRange { object });
+            }
         }
         self.report_contacts();
         self.ticks += 1;
@@ -308,12 +332,13 @@ impl<D: Dim> World<D> {
         }
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let broken = joint::relax(&mut self.joints, bodies, rigids, duration);
-        self.contacts.relax(bodies, rigids, duration);
+        self.contacts
+            .relax(bodies, rigids, &mut self.nearby, duration);
         self.remove_broken_joints(broken);
     }
 
     /// Quarantines pieces that are non-finite or too fast: resets their nodes to the positions at the start
-    /// of the tick, and freezes the pieces permanently.
+    /// of the tick, and freezes the pieces permanently. Reports pieces that left their range.
     fn quarantine(&mut self, report: &mut StepReport) {
         for (id, body) in self.bodies.entries_mut() {
             body.refresh_awake();
@@ -321,6 +346,10 @@ impl<D: Dim> World<D> {
                 report.quarantined += 1;
                 self.events.push(Event::Quarantined { body: id, piece });
             }
+            let out = body.pieces_out_of_range().into_iter();
+            let out = out.map(|piece| ObjectRef::Piece { body: id, piece });
+            self.events
+                .extend(out.map(|object| Event::LeftRange { object }));
         }
     }
 
@@ -350,14 +379,17 @@ impl<D: Dim> World<D> {
         };
         let pushed = self.knives.iter().filter(is_pushed);
         let cut = pushed.flat_map(|knife| knife.pieces_inside(&self.bodies));
-        let kept_awake: Vec<Hit> = kept_awake.chain(embedded).chain(cut).collect();
+        let overlapping = self.nearby.overlapping.pieces();
+        let kept_awake = kept_awake.chain(embedded).chain(cut).chain(overlapping);
+        let kept_awake: Vec<Hit> = kept_awake.collect();
         let fallen = fall_asleep(&mut self.bodies, &motions, &kept_awake, rest, tick);
         let events = fallen.iter().map(|&(body, piece)| Event::FellAsleep {
             body: self.bodies.id(body),
             piece,
         });
         self.events.extend(events);
-        let kept_awake = self.contacts.pushed_bodies(&self.rigids);
+        let mut kept_awake = self.contacts.pushed_bodies(&self.rigids);
+        kept_awake.extend(self.nearby.overlapping.rigids());
         fall_asleep_rigid(&mut self.rigids, &kept_awake, rest, tick);
     }
 

@@ -31,7 +31,9 @@ fn cubes<D: Dim>() -> (World<D>, [BodyHandle; 2]) {
     let grid = VoxelGrid::<D>::cube(4, 1.0).unwrap();
     let soft = SoftBody::new(grid, &[Material::default()]).unwrap();
     let middle = -soft.centre_of_mass();
-    let soft = world.add_soft_body(soft.translated(middle).with_layers(apart));
+    let soft = world
+        .add_soft_body(soft.translated(middle).with_layers(apart))
+        .unwrap();
     let cube = Shape::cuboid(D::Vector::splat(0.5));
     let rigid = RigidBody::dynamic(cube, 100.0).with_friction(0.3);
     let rigid = world.add_rigid_body(rigid).unwrap();
@@ -209,7 +211,7 @@ fn check_builders<D: Dim>() {
     let body = body
         .rotated_about(quarter, D::Vector::ZERO)
         .with_velocity(velocity);
-    let soft = world.add_soft_body(body.with_user_data(3)).into();
+    let soft = world.add_soft_body(body.with_user_data(3)).unwrap().into();
     let body = world.remove(rigid).unwrap();
     let body = body.translated(D::Vector::X).rotated(quarter);
     let body = body

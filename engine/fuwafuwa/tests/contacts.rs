@@ -34,7 +34,9 @@ fn ball<D: Dim>(world: &mut World<D>, height: f32) -> SoftBodyHandle {
     };
     let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
     let body = SoftBody::new(grid, &[rubber]).unwrap();
-    world.add_soft_body(body.translated(vector(0.0, height, 0.0)))
+    world
+        .add_soft_body(body.translated(vector(0.0, height, 0.0)))
+        .unwrap()
 }
 
 fn crate_of<D: Dim>(height: f32, half: f32) -> RigidBody<D> {
@@ -219,7 +221,7 @@ fn sensors_agree_with_test_of_every_node<D: Dim>() {
         if k % 2 == 0 {
             body.crumble();
         }
-        let body = world.add_soft_body(body.translated(point()));
+        let body = world.add_soft_body(body.translated(point())).unwrap();
         let velocity = vector::<D::Vector>(2.0, 4.0, 0.5) - point();
         world
             .add_velocity(body, Velocity::linear(velocity))

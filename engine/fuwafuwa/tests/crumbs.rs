@@ -176,11 +176,13 @@ fn check_grinding<D: Dim>(n: usize, least: usize) {
         ..Material::default()
     };
     let ball = |n, width| SoftBody::new(VoxelGrid::<D>::ball(n, width).unwrap(), &[tough]).unwrap();
-    world.add_soft_body(ball(n, 1.0));
+    world.add_soft_body(ball(n, 1.0)).unwrap();
     let mut dust = ball(n / 3, 0.33);
     dust.crumble();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
-    world.add_soft_body(dust.translated(vector(-0.36, 0.33, depth - 0.17)));
+    world
+        .add_soft_body(dust.translated(vector(-0.36, 0.33, depth - 0.17)))
+        .unwrap();
     world
         .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at(vector(-0.55, 0.5, depth)))
         .unwrap();
@@ -209,7 +211,9 @@ fn crumbs_stay_outside_halves_of_torn_disc() {
         .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
         .unwrap();
     let disc = VoxelGrid::ball(64, 1.0).unwrap();
-    world.add_soft_body(SoftBody::new(disc, &[Material::default()]).unwrap());
+    world
+        .add_soft_body(SoftBody::new(disc, &[Material::default()]).unwrap())
+        .unwrap();
     world
         .add_rigid_body(RigidBody::coupled(Shape::ball(0.08)).at(Vec2::new(-0.3, 0.55)))
         .unwrap();
@@ -234,8 +238,12 @@ fn check_way_out<D: Dim>(n: usize) {
     let mut dust = SoftBody::new(ball(n / 4, 0.25), &[tough]).unwrap();
     dust.crumble();
     let depth = if D::N == 3 { 0.37 } else { 0.0 };
-    let dust = world.add_soft_body(dust.translated(vector(0.1, 0.37, depth)));
-    world.add_soft_body(SoftBody::new(ball(n, 1.0), &[tough]).unwrap());
+    let dust = world
+        .add_soft_body(dust.translated(vector(0.1, 0.37, depth)))
+        .unwrap();
+    world
+        .add_soft_body(SoftBody::new(ball(n, 1.0), &[tough]).unwrap())
+        .unwrap();
     let (before, count) = crumbs_inside(&world);
     assert!(5 * before.len() > 4 * count, "{} of {count}", before.len());
     for tick in 0..60 {
@@ -296,7 +304,9 @@ fn left_of_a_swing<D: Dim>(poisson: f64, substeps: u32) -> f32 {
     let grid = VoxelGrid::from_fn(size, 1.0 / WIDE as f32, |at| {
         u8::from(at == [0; 3] || at[0] as usize > WIDE / 2)
     });
-    let soft = world.add_soft_body(SoftBody::new(grid.unwrap(), &[material]).unwrap());
+    let soft = world
+        .add_soft_body(SoftBody::new(grid.unwrap(), &[material]).unwrap())
+        .unwrap();
     let body = world.soft_body_mut(soft).unwrap();
     let views = body.piece_views();
     let crumb = views.iter().find(|view| view.element_count == 1).unwrap();
@@ -342,7 +352,9 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
         .unwrap();
     let crumb = VoxelGrid::<D>::cube(1, VOXEL).unwrap();
-    let crumb = world.add_soft_body(SoftBody::new(crumb, &[Material::default()]).unwrap());
+    let crumb = world
+        .add_soft_body(SoftBody::new(crumb, &[Material::default()]).unwrap())
+        .unwrap();
     let sleeps = |world: &World<D>| world[crumb].pieces().list[PieceId(0)].asleep;
     for _ in 0..90 {
         world.step();
@@ -353,7 +365,9 @@ fn depth_of_a_sleeper<D: Dim>(size: usize, speed: f32) -> f32 {
     heavy.density *= 10.0;
     let block = SoftBody::new(block, &[heavy]).unwrap();
     let thrown = block.with_velocity(Velocity::linear(vector(0.0, -speed, 0.0)));
-    world.add_soft_body(thrown.translated(vector(-0.3 * VOXEL, 4.0 * VOXEL, -0.2 * VOXEL)));
+    world
+        .add_soft_body(thrown.translated(vector(-0.3 * VOXEL, 4.0 * VOXEL, -0.2 * VOXEL)))
+        .unwrap();
     let mut lowest = f32::INFINITY;
     for _ in 0..20 {
         world.step();

@@ -33,7 +33,7 @@ fn halves<D: Dim>(world: &mut World<D>, dampings: [Damping; 2]) -> SoftBodyHandl
         half * u8::from(ball.is_solid(at))
     });
     let body = SoftBody::new(grid.unwrap(), &dampings.map(damped)).unwrap();
-    world.add_soft_body(body)
+    world.add_soft_body(body).unwrap()
 }
 
 /// Sets the velocity of every node [m/s] as a function of its position [m].

@@ -12,7 +12,9 @@ fn ball<D: Dim>() -> RigidBody<D> {
 fn check_stale_handles<D: Dim>(blade: Blade<D>) {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let grid = VoxelGrid::<D>::cube(2, 1.0).unwrap();
-    let body = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+    let body = world
+        .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+        .unwrap();
     let rigid = world.add_rigid_body(ball()).unwrap();
     let anchor = JointAnchor::on(rigid, D::Vector::ZERO);
     let joint = Joint::pin(anchor, JointAnchor::Point(D::Vector::ZERO));

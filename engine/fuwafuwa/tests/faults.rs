@@ -28,7 +28,7 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
 /// again, with events.
 fn check_cut_twice<D: Dim>(n: usize, [blade, across]: [Blade<D>; 2]) {
     let mut world = weightless::<D>();
-    let id = world.add_soft_body(ball(n));
+    let id = world.add_soft_body(ball(n)).unwrap();
     let first = world.cut(id, &blade).unwrap();
     let points = (n - 1) * (D::N - 1);
     assert!(first >= points && first < n * n, "{first}");
@@ -92,7 +92,7 @@ fn body_stays_whole_when_turned_by_half_turn() {
         let mut world = weightless::<Dim3>();
         let mut body = ball(12);
         place(&mut body, turn);
-        let id = world.add_soft_body(body);
+        let id = world.add_soft_body(body).unwrap();
         for _ in 0..10 {
             assert_eq!(world.step().nodes_split, 0);
         }
@@ -109,7 +109,7 @@ fn cut_keeps_turned_body_at_rest() {
         let mut body = ball(16);
         place(&mut body, turn);
         let from = body.piece_views()[0].centre;
-        let id = world.add_soft_body(body);
+        let id = world.add_soft_body(body).unwrap();
         world.step();
         let blade = Blade::parallelogram(from, Vec3::new(0.3, 1.0, 0.0), Vec3::Z);
         assert!(world.cut(id, &blade).unwrap() > 20);
@@ -164,8 +164,9 @@ fn unused_weaker_material_has_no_effect_on_cracks() {
     let run = |materials: &[Material]| {
         let mut world = weightless::<Dim2>();
         let grid = VoxelGrid::ball(16, 1.0).expect("a ball is not empty");
-        let id =
-            world.add_soft_body(SoftBody::new(grid, materials).expect("the materials are valid"));
+        let id = world
+            .add_soft_body(SoftBody::new(grid, materials).expect("the materials are valid"))
+            .unwrap();
         let blade = Blade::segment(Vec2::new(0.5, 0.4), Vec2::new(0.5, 2.0));
         assert!(world.cut(id, &blade).unwrap() > 0);
         let hand = RigidBody::kinematic(Shape::ball(0.1)).at(Vec2::new(0.5, 1.1));
@@ -188,10 +189,12 @@ fn unused_weaker_material_has_no_effect_on_cracks() {
 fn quarantine_spares_ball_around_non_finite_crumb() {
     for nowhere in [f32::NAN, f32::INFINITY, 1e30] {
         let mut world = weightless::<Dim2>();
-        let around = world.add_soft_body(ball(16));
+        let around = world.add_soft_body(ball(16)).unwrap();
         let grid = VoxelGrid::cube(1, 1.0 / 16.0).expect("a cube is not empty");
         let crumb = SoftBody::new(grid, &[Material::default()]).expect("the material is valid");
-        let crumb = world.add_soft_body(crumb.translated(Vec2::new(0.45, 0.45)));
+        let crumb = world
+            .add_soft_body(crumb.translated(Vec2::new(0.45, 0.45)))
+            .unwrap();
         for _ in 0..3 {
             world.step();
         }
@@ -231,7 +234,7 @@ fn check_zeros<D: Dim>(n: usize) {
         let body = SoftBody::new(grid, &[material]).expect("the material is valid");
         let middle = body.clone().translated(vector(-0.5, zero, zero));
         let velocity = Velocity::linear(D::Vector::splat(zero));
-        let id = world.add_soft_body(middle.with_velocity(velocity));
+        let id = world.add_soft_body(middle.with_velocity(velocity)).unwrap();
         let floor = Shape::HalfSpace {
             normal: vector(zero, 1.0, zero),
             offset: zero,

@@ -37,7 +37,9 @@ fn rubber() -> Material {
 fn soft<D: Dim>(world: &mut World<D>, middle: D::Vector) -> SoftBodyHandle {
     let grid = VoxelGrid::<D>::ball(10, 1.0).unwrap();
     let body = SoftBody::new(grid, &[rubber()]).unwrap();
-    world.add_soft_body(body.translated(middle - D::Vector::splat(0.5)))
+    world
+        .add_soft_body(body.translated(middle - D::Vector::splat(0.5)))
+        .unwrap()
 }
 
 fn ball<D: Dim>(world: &mut World<D>, at: D::Vector, mass: f32) -> RigidBodyHandle {
@@ -451,7 +453,9 @@ fn joint_breaks_when_body_is_removed() {
 fn pin_keeps_voxels_while_body_crumbles() {
     let mut world = world::<Dim3>(-9.81);
     let grid = VoxelGrid::<Dim3>::ball(10, 1.0).unwrap();
-    let id = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+    let id = world
+        .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+        .unwrap();
     let at = Vec3::new(0.5, 0.95, 0.5);
     let pin = world
         .add_joint(Joint::pin(JointAnchor::on(id, at), JointAnchor::Point(at)))

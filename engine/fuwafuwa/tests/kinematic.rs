@@ -13,7 +13,7 @@ fn check_rest<D: Dim>() {
     let ball = VoxelGrid::<D>::ball(8, 0.5).unwrap();
     let ball = SoftBody::new(ball, &[Material::default()]).unwrap();
     let ball = ball.translated(D::Vector::Y * 0.01);
-    let ball = world.add_soft_body(ball);
+    let ball = world.add_soft_body(ball).unwrap();
     let is_asleep = |world: &World<D>| world[ball].piece_views()[0].asleep;
     let has_ended = |world: &World<D>| {
         let mut events = world.events().iter();

@@ -37,7 +37,7 @@ fn block<D: Dim>(
         .filter(|(_, node)| node.at[1] == 0)
         .collect();
     bottom.iter().for_each(|&(id, _)| body.fix_node(id));
-    world.add_soft_body(body)
+    world.add_soft_body(body).unwrap()
 }
 
 /// Returns a material that cannot be torn.
@@ -363,7 +363,9 @@ fn fixed_edge_cuts_moving_body_at_any_speed() {
         };
         let grid = VoxelGrid::cube(24, 0.24).unwrap();
         let body = SoftBody::new(grid, &[soft]).unwrap();
-        let body = world.add_soft_body(body.translated(Vec2::new(-0.12, 0.02)));
+        let body = world
+            .add_soft_body(body.translated(Vec2::new(-0.12, 0.02)))
+            .unwrap();
         world.add_velocity(body, Vec2::new(0.0, -speed)).unwrap();
         let (_, id) = knife(&mut world, Vec2::new(0.003, 0.0), 0.1, 0.0);
         let mut up = world.remove(id).unwrap();
@@ -405,7 +407,7 @@ fn knife_cuts_body_with_all_nodes_fixed() {
     let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     nodes.iter().for_each(|&id| body.fix_node(id));
-    let body = world.add_soft_body(body);
+    let body = world.add_soft_body(body).unwrap();
     let (holder, id) = knife(&mut world, Vec2::new(0.083, 0.2), 0.1, 0.0);
     let (mut area, mut most) = (0.0, 0.0f32);
     go(&mut world, holder, Vec2::new(0.083, -0.05), 0.2, |world| {

@@ -37,7 +37,7 @@ fn weightless<D: Dim>() -> WorldConfig<D> {
 fn pressed<D: Dim>(material: Material, share: f32) -> ([f32; 3], World<D>, SoftBodyHandle) {
     let mut world = World::<D>::new(weightless()).unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::cube(8, 1.0).unwrap(), &[material]).unwrap();
-    let id = world.add_soft_body(body);
+    let id = world.add_soft_body(body).unwrap();
     let plate = |y: f32| {
         let plate = RigidBody::kinematic(Shape::cuboid(vector(3.0, 0.25, 3.0)));
         plate.at(vector(0.5, y, 0.0)).with_friction(0.0)
@@ -123,7 +123,9 @@ fn check_same_bits<D: Dim>() {
             .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
             .unwrap();
         let body = SoftBody::new(VoxelGrid::<D>::ball(10, 1.0).unwrap(), &[material]).unwrap();
-        world.add_soft_body(body.translated(vector(0.0, 0.2, 0.0)));
+        world
+            .add_soft_body(body.translated(vector(0.0, 0.2, 0.0)))
+            .unwrap();
         (0..60).for_each(|_| _ = world.step());
         node_states(&world)
     };
@@ -235,7 +237,7 @@ fn check_kept<D: Dim>() {
     };
     let mut world = World::<D>::new(weightless()).unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::ball(8, 1.0).unwrap(), &[clay]).unwrap();
-    let id = world.add_soft_body(body);
+    let id = world.add_soft_body(body).unwrap();
     let body = world.soft_body_mut(id).unwrap();
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     for node in nodes {
@@ -368,7 +370,7 @@ fn check_abuse<D: Dim>(seed: u32) {
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
         .unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::ball(8, 1.0).unwrap(), &[clay]).unwrap();
-    let id = world.add_soft_body(body);
+    let id = world.add_soft_body(body).unwrap();
     let hand = world
         .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at(vector(0.5, 2.0, 0.5)))
         .unwrap();

@@ -41,7 +41,9 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
 /// with an axis.
 fn world<D: Dim>() -> World<D> {
     let mut world = World::new(weightless()).unwrap();
-    world.add_soft_body(ball::<D>(16).rotated_about(Rotation::in_plane(0.4), D::Vector::ZERO));
+    world
+        .add_soft_body(ball::<D>(16).rotated_about(Rotation::in_plane(0.4), D::Vector::ZERO))
+        .unwrap();
     let floor = Shape::half_space(D::Vector::Y, vector(0.0, -2.0, 0.0));
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.3))
@@ -249,7 +251,7 @@ fn row<D: Dim>() -> (World<D>, [RigidBodyHandle; 3], SoftBodyHandle) {
     let half = Vec3::new(0.5, 0.5, if D::N == 2 { 0.0 } else { 0.5 });
     let cube = SoftBody::new(VoxelGrid::cube(4, 1.0).unwrap(), &[Material::default()]).unwrap();
     let cube = cube.translated(vector(4.0 - half.x, -half.y, -half.z));
-    let cube = world.add_soft_body(cube);
+    let cube = world.add_soft_body(cube).unwrap();
     (world, rigids, cube)
 }
 
@@ -452,8 +454,10 @@ fn check_queries_after_changes<D: Blades>() {
         .unwrap();
     let free = Shape::ball(0.2).translated(vector(1.5, 0.0, 0.0));
     let free = world.add_rigid_body(RigidBody::dynamic(free, 1.0)).unwrap();
-    let body = world.add_soft_body(ball::<D>(12));
-    let other = world.add_soft_body(ball::<D>(8).translated(vector(0.0, 1.2, 0.0)));
+    let body = world.add_soft_body(ball::<D>(12)).unwrap();
+    let other = world
+        .add_soft_body(ball::<D>(8).translated(vector(0.0, 1.2, 0.0)))
+        .unwrap();
     check_cache(&world, "start");
     for _ in 0..20 {
         world.step();
@@ -493,7 +497,9 @@ fn check_queries_after_changes<D: Blades>() {
     world.remove(body).unwrap();
     world.remove(free).unwrap();
     check_cache(&world, "removed bodies");
-    let again = world.add_soft_body(ball::<D>(10).translated(vector(0.3, 0.0, 0.0)));
+    let again = world
+        .add_soft_body(ball::<D>(10).translated(vector(0.3, 0.0, 0.0)))
+        .unwrap();
     check_cache(&world, "added body in the slot of another");
     world.soft_body_mut(again).unwrap().crumble();
     for _ in 0..20 {

@@ -58,7 +58,9 @@ fn check_whole<D: Dim>(world: &World<D>, what: &str) {
 fn scaled_grid_keeps_voxels_removed() {
     let grid = VoxelGrid::<Dim2>::from_fn([4, 2, 1], 0.5, |_| 1).unwrap();
     let mut world = World::<Dim2>::new(weightless()).unwrap();
-    let id = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+    let id = world
+        .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+        .unwrap();
     let middle = Blade::segment(Vec2::new(1.0, -1.0), Vec2::new(1.0, 2.0));
     world.cut(id, &middle).unwrap();
     let right = { world[id].piece_views().into_iter() }.find(|piece| piece.centre.x > 1.0);
@@ -107,7 +109,7 @@ fn check_history<D: Blades>(seed: u32, n: usize) -> usize {
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.3))
         .unwrap();
     let body = SoftBody::new(VoxelGrid::<D>::ball(n, 1.0).unwrap(), &[soft]).unwrap();
-    let id = world.add_soft_body(body);
+    let id = world.add_soft_body(body).unwrap();
     let mut bookmark = world[id].bookmark();
     let mut gone = 0;
     for round in 0..12 {
@@ -176,7 +178,7 @@ fn halves<D: Blades>(settings: WorldConfig<D>) -> (World<D>, SoftBodyHandle) {
     let mut world = World::new(settings).unwrap();
     let cube = VoxelGrid::cube(8, 1.0).unwrap();
     let cube = SoftBody::new(cube, &[Material::default()]).unwrap();
-    let cube = world.add_soft_body(cube);
+    let cube = world.add_soft_body(cube).unwrap();
     let blade = D::blade(Vec3::new(0.5, -1.0, -1.0), Vec3::Y * 3.0, Vec3::Z * 3.0);
     world.cut(cube, &blade).unwrap();
     assert_eq!(world[cube].pieces().count(), 2);
@@ -283,13 +285,21 @@ fn check_supported<D: Blades>() {
         };
         SoftBody::new(VoxelGrid::<D>::cube(n, width).unwrap(), &[strong]).unwrap()
     };
-    let below = world.add_soft_body(cube(8, 0.8).translated(D::Vector::ZERO));
+    let below = world
+        .add_soft_body(cube(8, 0.8).translated(D::Vector::ZERO))
+        .unwrap();
     let blade = D::blade(Vec3::new(0.4, -1.0, -1.0), Vec3::Y * 3.0, Vec3::Z * 3.0);
     world.cut(below, &blade).unwrap();
     // Three small cubes: one on each half of the cut cube, and one elsewhere on the floor.
-    let on_left = world.add_soft_body(cube(3, 0.3).translated(vector(0.05, 0.82, 0.2)));
-    let on_right = world.add_soft_body(cube(3, 0.3).translated(vector(0.45, 0.82, 0.2)));
-    let far = world.add_soft_body(cube(3, 0.3).translated(vector(5.0, 0.01, 0.0)));
+    let on_left = world
+        .add_soft_body(cube(3, 0.3).translated(vector(0.05, 0.82, 0.2)))
+        .unwrap();
+    let on_right = world
+        .add_soft_body(cube(3, 0.3).translated(vector(0.45, 0.82, 0.2)))
+        .unwrap();
+    let far = world
+        .add_soft_body(cube(3, 0.3).translated(vector(5.0, 0.01, 0.0)))
+        .unwrap();
     let all_sleep = |world: &World<D>| {
         let mut bodies = world.soft_bodies();
         bodies.all(|(_, body)| body.pieces().list.iter().all(|piece| piece.asleep))
@@ -410,7 +420,7 @@ fn check_last<D: Blades>() {
     world.step();
     // Another body can take the arena slot of the removed body, but the old handle stays stale.
     let ball = SoftBody::new(VoxelGrid::ball(6, 1.0).unwrap(), &[Material::default()]).unwrap();
-    let ball = world.add_soft_body(ball);
+    let ball = world.add_soft_body(ball).unwrap();
     (0..30).for_each(|_| _ = world.step());
     assert!(world.soft_body(ball).is_ok() && world.soft_body(cube).is_err());
     check_whole(&world, "after the last piece");
@@ -506,7 +516,7 @@ fn remove_outside_removes_pieces_and_dynamic_bodies() {
 fn changes_since_reports_tear_and_removal_together() {
     let mut world = World::<Dim2>::new(weightless()).unwrap();
     let cube = SoftBody::new(VoxelGrid::cube(32, 1.0).unwrap(), &[Material::default()]).unwrap();
-    let cube = world.add_soft_body(cube);
+    let cube = world.add_soft_body(cube).unwrap();
     let mut bookmark: Bookmark = world[cube].bookmark();
     let blade = Blade::segment(Vec2::new(-0.1, 0.2), Vec2::new(0.2, -0.1));
     world.cut(cube, &blade).unwrap();

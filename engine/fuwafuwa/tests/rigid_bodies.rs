@@ -136,7 +136,9 @@ fn one_of_two_towers_falls<D: Dim>() {
         (
             foot,
             boxes,
-            world.add_soft_body(soft.translated(vector(x - 0.2, 1.0, z))),
+            world
+                .add_soft_body(soft.translated(vector(x - 0.2, 1.0, z)))
+                .unwrap(),
         )
     };
     let (falling, standing) = (tower(0.0), tower(3.0));
@@ -310,7 +312,9 @@ fn it_lies_on_a_soft_body<D: Dim>(mass: f32) {
         toughness: f32::INFINITY,
         ..Material::default()
     };
-    world.add_soft_body(SoftBody::new(grid, &[material]).unwrap());
+    world
+        .add_soft_body(SoftBody::new(grid, &[material]).unwrap())
+        .unwrap();
     for _ in 0..240 {
         world.step();
     }
@@ -347,7 +351,9 @@ fn soft_ball_pushes_and_rolls_rigid_ball() {
         .add_rigid_body(RigidBody::dynamic(ball(Vec3::new(1.6, 0.3, 0.5)), 1.0))
         .unwrap();
     let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
-    let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+    let soft = world
+        .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+        .unwrap();
     for _ in 0..60 {
         world.step();
     }
@@ -462,7 +468,9 @@ fn add_rigid_body_names_invalid_field() {
 fn sleepers_hold<D: Dim>() {
     let mut world = world::<D>(0.0);
     let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();
-    let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+    let soft = world
+        .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+        .unwrap();
     world.put_to_sleep(soft).unwrap();
     let depth = if D::N == 2 { 0.0 } else { 0.5 };
     let slow = world

@@ -39,7 +39,7 @@ fn slow_bodies_go_on<D: Dim>(gravity: f32) {
     let mut world = World::<D>::new(config(gravity)).unwrap();
     add_floor(&mut world, 0.0);
     let along = Velocity::linear(vector(0.02, 0.0, 0.0));
-    let soft = world.add_soft_body(cube().with_velocity(along));
+    let soft = world.add_soft_body(cube().with_velocity(along)).unwrap();
     let block = Shape::cuboid(D::Vector::splat(0.25));
     let block = RigidBody::dynamic(block, 1.0).at(vector(5.0, 0.25, 0.25));
     let rigid = world.add_rigid_body(block.with_velocity(along)).unwrap();
@@ -71,7 +71,7 @@ fn sleepers<D: Dim>(sleep: bool) -> [bool; 2] {
     })
     .unwrap();
     add_floor(&mut world, 0.5);
-    let soft = world.add_soft_body(cube());
+    let soft = world.add_soft_body(cube()).unwrap();
     let block = Shape::cuboid(D::Vector::splat(0.25));
     let block = RigidBody::dynamic(block, 1.0).at(vector(5.0, 0.25, 0.25));
     let rigid = world.add_rigid_body(block).unwrap();
@@ -93,8 +93,10 @@ fn setting_turns_sleep_off() {
 fn slow_press_wakes<D: Dim>() {
     let mut world = World::<D>::new(config(9.81)).unwrap();
     add_floor(&mut world, 0.5);
-    let low = world.add_soft_body(cube());
-    world.add_soft_body(cube().translated(vector(0.0, 0.5, 0.0)));
+    let low = world.add_soft_body(cube()).unwrap();
+    world
+        .add_soft_body(cube().translated(vector(0.0, 0.5, 0.0)))
+        .unwrap();
     (0..600).for_each(|_| _ = world.step());
     let is_asleep = |world: &World<D>| world[low].piece_views()[0].asleep;
     assert!(is_asleep(&world));

@@ -30,7 +30,9 @@ fn torn_world<D: Dim>(n: usize) -> World<D> {
         .unwrap();
     let ball = VoxelGrid::ball(n, 1.0).unwrap();
     let body = SoftBody::new(ball, &[Material::default()]).unwrap();
-    world.add_soft_body(body.translated(vector(0.0, 0.05, 0.0)));
+    world
+        .add_soft_body(body.translated(vector(0.0, 0.05, 0.0)))
+        .unwrap();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let hand = RigidBody::coupled(Shape::ball(0.08)).at(vector(-0.3, 0.5, depth));
     world.add_rigid_body(hand).unwrap();
@@ -210,7 +212,9 @@ fn check_crumbs_resume<D: Blades>(n: usize) {
     let mut world = torn_world::<D>(2 * n);
     let ball = world.nth_soft_body(0).unwrap();
     let cube = SoftBody::new(VoxelGrid::cube(n, 0.5).unwrap(), &[Material::default()]).unwrap();
-    let crumbs = world.add_soft_body(cube.translated(vector(-1.5, 0.0, 0.3)));
+    let crumbs = world
+        .add_soft_body(cube.translated(vector(-1.5, 0.0, 0.3)))
+        .unwrap();
     world.soft_body_mut(crumbs).unwrap().crumble();
     let hand = world
         .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(vector(-3.0, 0.1, 0.5)))
@@ -252,11 +256,13 @@ fn check_any_state<D: Dim>(n: usize) {
     let mut world = torn_world::<D>(n);
     let nowhere = VoxelGrid::ball(4, 0.2).unwrap();
     let nowhere = SoftBody::new(nowhere, &[Material::default()]).unwrap();
-    let other = world.add_soft_body(
-        nowhere
-            .with_velocity(Velocity::linear(D::Vector::splat(f32::NAN)))
-            .translated(vector(5.0, 3.0, 0.0)),
-    );
+    let other = world
+        .add_soft_body(
+            nowhere
+                .with_velocity(Velocity::linear(D::Vector::splat(f32::NAN)))
+                .translated(vector(5.0, 3.0, 0.0)),
+        )
+        .unwrap();
     let ball = world.nth_soft_body(0).unwrap();
     for tick in 0..60 {
         push(&mut world, tick..tick + 1);
@@ -412,7 +418,7 @@ fn loaded_world_continues_with_same_bits_after_changes() {
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
         .unwrap();
-    let ids = [0.0, 0.97, 1.94].map(|x| world.add_soft_body(ball(x)));
+    let ids = [0.0, 0.97, 1.94].map(|x| world.add_soft_body(ball(x)).unwrap());
     let (down, blade) = (
         RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(1.4, 1.2)),
         Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0)),
@@ -430,7 +436,7 @@ fn loaded_world_continues_with_same_bits_after_changes() {
         &|world| drop(world.remove(ids[1]).unwrap()),
         &|world| {
             assert_eq!(
-                world.add_soft_body(ball(0.97)),
+                world.add_soft_body(ball(0.97)).unwrap(),
                 world.nth_soft_body(1).unwrap()
             )
         },
@@ -464,13 +470,16 @@ fn full_of_all<D: Dim>(n: usize) -> World<D> {
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
         body.translated(at)
     };
-    world.add_soft_body(small(vector(0.4, 1.05, 0.4)));
-    world.add_soft_body(small(vector(-3.0, 0.0, 0.0)));
-    world.add_soft_body(small(vector(-2.9, 0.2, 0.0)));
-    world.add_soft_body(
-        small(vector(5.0, 3.0, 0.0)).with_velocity(Velocity::linear(D::Vector::splat(f32::NAN))),
-    );
-    let gone = world.add_soft_body(small(vector(-5.0, 1.0, 0.0)));
+    world.add_soft_body(small(vector(0.4, 1.05, 0.4))).unwrap();
+    world.add_soft_body(small(vector(-3.0, 0.0, 0.0))).unwrap();
+    world.add_soft_body(small(vector(-2.9, 0.2, 0.0))).unwrap();
+    world
+        .add_soft_body(
+            small(vector(5.0, 3.0, 0.0))
+                .with_velocity(Velocity::linear(D::Vector::splat(f32::NAN))),
+        )
+        .unwrap();
+    let gone = world.add_soft_body(small(vector(-5.0, 1.0, 0.0))).unwrap();
     push(&mut world, 0..40);
     world.remove(gone).unwrap();
     world

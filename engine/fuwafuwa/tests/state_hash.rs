@@ -456,10 +456,18 @@ fn world_of_everything<D: Blades>(n: usize) -> World<D> {
         toughness: 30.0,
         ..Material::default()
     };
-    let cube = world.add_soft_body(soft(n, vector(0.0, 0.02, 0.0), plastic));
-    let resting = world.add_soft_body(soft(1, vector(3.0, 0.0, 0.0), Material::default()));
-    let lying = world.add_soft_body(soft(1, vector(0.1, 0.45, 0.0), Material::default()));
-    let gone = world.add_soft_body(soft(1, vector(9.0, 0.0, 0.0), Material::default()));
+    let cube = world
+        .add_soft_body(soft(n, vector(0.0, 0.02, 0.0), plastic))
+        .unwrap();
+    let resting = world
+        .add_soft_body(soft(1, vector(3.0, 0.0, 0.0), Material::default()))
+        .unwrap();
+    let lying = world
+        .add_soft_body(soft(1, vector(0.1, 0.45, 0.0), Material::default()))
+        .unwrap();
+    let gone = world
+        .add_soft_body(soft(1, vector(9.0, 0.0, 0.0), Material::default()))
+        .unwrap();
     let ghost = Layers {
         memberships: 1,
         filters: 3,

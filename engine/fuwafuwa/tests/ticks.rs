@@ -54,7 +54,9 @@ fn check_fall<D: Dim>() {
     // A body falls 1.226 m in 0.5 s, whatever the length of a tick.
     for tick in TICKS {
         let mut world = world::<D>(tick);
-        let ball = world.add_soft_body(ball::<D>(12).translated(vector(0.0, 5.0, 0.0)));
+        let ball = world
+            .add_soft_body(ball::<D>(12).translated(vector(0.0, 5.0, 0.0)))
+            .unwrap();
         let start = world[ball].centre_of_mass()[1];
         pass(&mut world, 0.5, |_| {});
         let seconds = (0.5 / tick).round() * tick;
@@ -77,7 +79,9 @@ fn fall_distance_is_independent_of_tick() {
 /// and the time at which it falls asleep [s].
 fn landing<D: Dim>(tick: f32) -> [f32; 3] {
     let mut world = world::<D>(tick);
-    let ball = world.add_soft_body(ball::<D>(12).translated(vector(0.0, 0.5, 0.0)));
+    let ball = world
+        .add_soft_body(ball::<D>(12).translated(vector(0.0, 0.5, 0.0)))
+        .unwrap();
     let (mut lowest, mut touched, mut slept) = (f32::MAX, 0.0, 0.0);
     pass(&mut world, 30.0, |world| {
         let seconds = world.ticks() as f32 * tick;
@@ -129,7 +133,7 @@ fn torn<D: Dim>(tick: f32) -> u32 {
         ..Material::default()
     };
     let body = SoftBody::new(VoxelGrid::<D>::ball(12, 1.0).unwrap(), &[soft]).unwrap();
-    world.add_soft_body(body);
+    world.add_soft_body(body).unwrap();
     let wall = Shape::half_space(vector(-1.0, 0.0, 0.0), vector(1.1, 0.0, 0.0));
     world
         .add_rigid_body(RigidBody::fixed(wall).with_friction(0.2))
@@ -168,7 +172,7 @@ fn tearing_is_similar_at_any_tick() {
 fn substeps_per_second_are_independent_of_tick() {
     for tick in TICKS {
         let mut world = world::<Dim2>(tick);
-        world.add_soft_body(ball::<Dim2>(12));
+        world.add_soft_body(ball::<Dim2>(12)).unwrap();
         let a_second = world.step().substeps as f32 / tick;
         assert!(
             (a_second / 960.0 - 1.0).abs() < 0.05,
@@ -184,7 +188,7 @@ fn substeps_per_second_are_independent_of_tick() {
         };
         let mut world = world::<Dim3>(tick);
         let body = SoftBody::new(VoxelGrid::ball(8, 0.2).unwrap(), &[stiff]).unwrap();
-        let id = world.add_soft_body(body);
+        let id = world.add_soft_body(body).unwrap();
         world[id].stiffness_scale()
     };
     let usual = scale(DEFAULT_TICK);
@@ -227,7 +231,9 @@ fn config_rejects_tick_out_of_range() {
 fn set_config_takes_effect_immediately() {
     let usual = WorldConfig::default();
     let mut world = world::<Dim2>(DEFAULT_TICK);
-    let ball = world.add_soft_body(ball::<Dim2>(12).translated(Vec2::new(0.0, 50.0)));
+    let ball = world
+        .add_soft_body(ball::<Dim2>(12).translated(Vec2::new(0.0, 50.0)))
+        .unwrap();
     let speed = |world: &World<Dim2>| {
         let body = &world[ball];
         body.momentum().linear[1] / body.total_mass()
@@ -271,7 +277,7 @@ fn set_config_takes_effect_immediately() {
 /// the tick.
 fn check_callback<D: Dim>(tick: f32) {
     let mut world = world::<D>(tick);
-    world.add_soft_body(ball::<D>(12));
+    world.add_soft_body(ball::<D>(12)).unwrap();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     // The bar meets the ball with one end, so that the contact exerts a force and a torque on the bar.
     let bar = Shape::capsule(vector(-1.0, 0.0, 0.0), vector(0.3, 0.0, 0.0), 0.1);

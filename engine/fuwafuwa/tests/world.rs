@@ -51,7 +51,7 @@ fn volume_inside<D: Dim>(body: &SoftBody<D>) -> f32 {
 
 fn check_cut_in_two<D: Dim>(n: usize, blade: Blade<D>) {
     let mut world = World::<D>::new(weightless()).unwrap();
-    let id = world.add_soft_body(ball::<D>(n, unbreakable()));
+    let id = world.add_soft_body(ball::<D>(n, unbreakable())).unwrap();
     let mass = world[id].total_mass();
     let volume = volume_inside(&world[id]);
     assert!(
@@ -88,7 +88,7 @@ fn cut_splits_body_in_two() {
 #[test]
 fn bare_faces_and_nodes_reveal_changes_of_cut() {
     let mut world = World::<Dim3>::new(weightless()).unwrap();
-    let soft = world.add_soft_body(ball(16, unbreakable()));
+    let soft = world.add_soft_body(ball(16, unbreakable())).unwrap();
     let forms = |world: &World<Dim3>| -> Vec<(u8, Vec<NodeId>)> {
         let body = &world[soft];
         let form = |id| {
@@ -122,7 +122,7 @@ fn bare_faces_and_nodes_reveal_changes_of_cut() {
 #[test]
 fn short_cut_leaves_slit_in_one_piece() {
     let mut world = World::<Dim2>::new(weightless()).unwrap();
-    let id = world.add_soft_body(ball(24, unbreakable()));
+    let id = world.add_soft_body(ball(24, unbreakable())).unwrap();
     let slit = Blade::segment(Vec2::new(0.5, -0.1), Vec2::new(0.5, 0.5));
     assert!(world.cut(id, &slit).unwrap() > 5);
     validate(&world);
@@ -147,7 +147,9 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
         damping: Damping::at(0.3, 4.0),
         ..unbreakable()
     };
-    let id = world.add_soft_body(ball::<D>(n, damped).translated(vector(0.0, 0.3, 0.0)));
+    let id = world
+        .add_soft_body(ball::<D>(n, damped).translated(vector(0.0, 0.3, 0.0)))
+        .unwrap();
     let (mut hit, mut slept) = (false, false);
     for _ in 0..600 {
         world.step();
@@ -195,7 +197,9 @@ fn ball_falls_sleeps_and_wakes_when_touched() {
 /// Moves a hand through a body 1 m wide at 20 m/s, and checks that the state stays valid.
 fn check_slam<D: Dim>(n: usize, drive: MotionType) {
     let mut world = World::<D>::new(weightless()).unwrap();
-    let soft = world.add_soft_body(ball::<D>(n, Material::default()));
+    let soft = world
+        .add_soft_body(ball::<D>(n, Material::default()))
+        .unwrap();
     let depth = if D::N == 3 { 0.5 } else { 0.0 };
     let hand = RigidBody::coupled(Shape::ball(0.1))
         .at(vector(-0.5, 0.5, depth))
@@ -234,7 +238,7 @@ fn inverted_body_recovers_and_stays_finite() {
         let mirrored = Vec2::new(1.0 - at.x, at.y);
         body.set_node_state(id, mirrored, Vec2::ZERO).unwrap();
     }
-    let soft = world.add_soft_body(body);
+    let soft = world.add_soft_body(body).unwrap();
     let inverted: Vec<u32> = (0..120).map(|_| world.step().inverted).collect();
     assert!(
         inverted[0] > 0,
@@ -259,7 +263,9 @@ fn too_stiff_body_is_softened() {
         .unwrap();
     let mut steel = unbreakable();
     steel.elasticity.young = 1e9;
-    let id = world.add_soft_body(ball::<Dim2>(24, steel).translated(Vec2::new(0.0, 0.1)));
+    let id = world
+        .add_soft_body(ball::<Dim2>(24, steel).translated(Vec2::new(0.0, 0.1)))
+        .unwrap();
     assert!(world[id].stiffness_scale() < 0.1);
     assert_eq!(world.substeps(), 64);
     for _ in 0..60 {
@@ -280,8 +286,8 @@ fn check_no_tunnelling<D: Dim>(n: usize) {
         }
         let velocity = Velocity::linear(vector(10.0, 0.0, 0.0));
         let flying = flying.translated(vector(-1.2, 0.0, 0.0));
-        let flying = world.add_soft_body(flying.with_velocity(velocity));
-        let target = world.add_soft_body(ball::<D>(n, unbreakable()));
+        let flying = world.add_soft_body(flying.with_velocity(velocity)).unwrap();
+        let target = world.add_soft_body(ball::<D>(n, unbreakable())).unwrap();
         for tick in 0..40 {
             world.step();
             let target = world[target].piece_views()[0];
@@ -311,7 +317,7 @@ fn check_smooth_reaction<D: Dim>(n: usize) {
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))
         .unwrap();
-    world.add_soft_body(ball::<D>(n, unbreakable()));
+    world.add_soft_body(ball::<D>(n, unbreakable())).unwrap();
     let z = if D::N == 3 { 0.5 } else { 0.0 };
     let hand = RigidBody::coupled(Shape::ball(0.15)).at(vector(0.5, 1.2, z));
     let hand = world.add_rigid_body(hand).unwrap();
@@ -364,7 +370,9 @@ fn squash_is_equal_with_8_and_16_substeps() {
         world
             .add_rigid_body(RigidBody::fixed(floor).with_friction(0.4))
             .unwrap();
-        let id = world.add_soft_body(ball::<Dim3>(16, unbreakable()));
+        let id = world
+            .add_soft_body(ball::<Dim3>(16, unbreakable()))
+            .unwrap();
         let hand = RigidBody::coupled(Shape::ball(0.2)).at(Vec3::new(0.5, 1.2, 0.5));
         let hand = world.add_rigid_body(hand).unwrap();
         let mut lowest = 0.0_f32;

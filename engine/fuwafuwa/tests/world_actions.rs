@@ -29,7 +29,7 @@ fn ball<D: Dim>(n: usize) -> SoftBody<D> {
 
 fn with<D: Dim>(settings: WorldConfig<D>, body: SoftBody<D>) -> (World<D>, SoftBodyHandle) {
     let mut world = World::new(settings).unwrap();
-    let id = world.add_soft_body(body);
+    let id = world.add_soft_body(body).unwrap();
     (world, id)
 }
 
@@ -161,14 +161,18 @@ fn move_body_keeps_bookmarks_valid() {
 fn check_pulled_away<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     world.add_rigid_body(floor()).unwrap();
-    let below = world.add_soft_body(
-        SoftBody::new(VoxelGrid::cube(8, 1.0).unwrap(), &[Material::default()]).unwrap(),
-    );
-    let above = world.add_soft_body(
-        SoftBody::new(VoxelGrid::cube(8, 1.0).unwrap(), &[Material::default()])
-            .unwrap()
-            .translated(vector(0.0, 1.001, 0.0)),
-    );
+    let below = world
+        .add_soft_body(
+            SoftBody::new(VoxelGrid::cube(8, 1.0).unwrap(), &[Material::default()]).unwrap(),
+        )
+        .unwrap();
+    let above = world
+        .add_soft_body(
+            SoftBody::new(VoxelGrid::cube(8, 1.0).unwrap(), &[Material::default()])
+                .unwrap()
+                .translated(vector(0.0, 1.001, 0.0)),
+        )
+        .unwrap();
     let sleeps = |world: &World<D>| {
         let is_still = |id: SoftBodyHandle| {
             let pieces = &world[id].pieces().list;
@@ -273,7 +277,11 @@ fn check_pull<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let scales = [1.0, 0.5, 0.0, -2.0];
     let bodies: Vec<SoftBodyHandle> = (0..4)
-        .map(|k| world.add_soft_body(ball::<D>(8).translated(vector(3.0 * k as f32, 0.0, 0.0))))
+        .map(|k| {
+            world
+                .add_soft_body(ball::<D>(8).translated(vector(3.0 * k as f32, 0.0, 0.0)))
+                .unwrap()
+        })
         .collect();
     for (&body, scale) in bodies.iter().zip(scales) {
         world.set_gravity_scale(body, scale).unwrap();
@@ -302,7 +310,9 @@ fn check_sleep<D: Dim>() {
     (0..60).for_each(|_| _ = world.step());
     assert_eq!(apart(&world[sleeper], &before), 0.0);
     // A second body falls on the sleeping one and wakes it.
-    world.add_soft_body(ball::<D>(8).translated(vector(0.0, 1.5, 0.0)));
+    world
+        .add_soft_body(ball::<D>(8).translated(vector(0.0, 1.5, 0.0)))
+        .unwrap();
     let woke = |world: &World<D>| {
         let events = world.events().iter();
         { events }.any(|event| matches!(event, Event::WokeUp { body, .. } if *body == sleeper))
@@ -346,11 +356,13 @@ fn set_config_applies_to_running_world() {
         ..Material::default()
     };
     let grid = VoxelGrid::<Dim2>::ball(32, 1.0).unwrap();
-    let hard = world.add_soft_body(
-        SoftBody::new(grid, &[hard])
-            .unwrap()
-            .translated(Vec2::new(5.0, 0.0)),
-    );
+    let hard = world
+        .add_soft_body(
+            SoftBody::new(grid, &[hard])
+                .unwrap()
+                .translated(Vec2::new(5.0, 0.0)),
+        )
+        .unwrap();
     let soft = world[hard].stiffness_scale();
     world.set_config(few).unwrap();
     let softer = world[hard].stiffness_scale();
@@ -365,8 +377,11 @@ fn set_config_applies_to_running_world() {
 
 fn check_field<D: Dim>() {
     let mut world = World::<D>::new(weightless()).unwrap();
-    let sides =
-        [-3.0, 3.0].map(|x| world.add_soft_body(ball::<D>(8).translated(vector(x, 0.0, 0.0))));
+    let sides = [-3.0, 3.0].map(|x| {
+        world
+            .add_soft_body(ball::<D>(8).translated(vector(x, 0.0, 0.0)))
+            .unwrap()
+    });
     let planet = field_around::<D::Vector>(vector(0.5, 0.5, 0.0), 5.0, 1.0);
     let nowhere = |_| D::Vector::splat(f32::NAN);
     let fields: [&dyn Fn(D::Vector) -> D::Vector; 2] = [&planet, &nowhere];
@@ -496,7 +511,7 @@ fn check_any<D: Dim>(seeds: std::ops::Range<u64>) {
             match random(12) {
                 0 => {
                     let by = vector(random(5) as f32, 1.0, 0.0);
-                    bodies.push(world.add_soft_body(ball::<D>(4).translated(by)));
+                    bodies.push(world.add_soft_body(ball::<D>(4).translated(by)).unwrap());
                 }
                 1 => _ = world.remove(body),
                 2..5 => _ = world.step(),

@@ -61,7 +61,9 @@ mod tests {
     fn age_restarts_for_elements_remodelled_by_a_cut() {
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(32, 1.0).unwrap();
-        let id = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let id = world
+            .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+            .unwrap();
         let mut ages = Ages::default();
         ages.update(&world, 0.0);
         let young = |ages: &Ages| ages.seconds[0].iter().filter(|&&age| age < 0.2).count();

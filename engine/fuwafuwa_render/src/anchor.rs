@@ -142,7 +142,9 @@ mod tests {
     fn anchor_rotates_with_largest_piece_and_ignores_squash() {
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(24, 1.0).unwrap();
-        let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let soft = world
+            .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+            .unwrap();
         let rest = anchor(&world[soft]);
         assert!(
             (rest.scale - 0.48).abs() < 0.02 && (rest.axes[0].x - 1.0).abs() < 1e-6,
@@ -180,7 +182,9 @@ mod tests {
     fn anchor_rotates_about_any_axis_in_3d() {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(12, 1.0).unwrap();
-        let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let soft = world
+            .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+            .unwrap();
         let body = world.soft_body_mut(soft).unwrap();
         let ids: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in ids {

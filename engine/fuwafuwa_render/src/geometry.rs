@@ -171,7 +171,7 @@ mod tests {
         let body = SoftBody::new(whole, &[Material::default()]).unwrap();
         assert!(body.element_views().any(|view| view.level > 0));
         let mut world = World::new(WorldConfig::default()).unwrap();
-        world.add_soft_body(body);
+        world.add_soft_body(body).unwrap();
         let palette = Palette::candy();
         let camera = Camera::fit(Vec2::ZERO, Vec2::ONE, [64, 64]);
         let (colours, grids) = ([None, Some([10, 20, 30])], [Some(numbers.clone())]);

@@ -295,7 +295,9 @@ mod tests {
     fn disc(n: usize) -> World<Dim2> {
         let mut world = World::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(n, 1.0).unwrap();
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        world
+            .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+            .unwrap();
         world
     }
 
@@ -381,14 +383,18 @@ mod tests {
         let grid = VoxelGrid::from_fn([20, 20, 1], 0.05, |[x, y, _]| {
             u8::from(!(8..12).contains(&x) || !(8..12).contains(&y))
         });
-        world.add_soft_body(SoftBody::new(grid.unwrap(), &[Material::default()]).unwrap());
+        world
+            .add_soft_body(SoftBody::new(grid.unwrap(), &[Material::default()]).unwrap())
+            .unwrap();
         let ring = rings(&world);
         assert_eq!(ring.spans.len(), 2);
         assert!(ring.spans.iter().any(|span| span.area < -0.02));
 
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::from_fn([1, 1, 1], 1.0, |_| 1).unwrap();
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        world
+            .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+            .unwrap();
         let crumb = rings(&world);
         assert!(crumb.points.len() >= 12);
         for point in &crumb.points {

@@ -84,7 +84,9 @@ fn body_of(world: &World<Dim2>) -> &SoftBody<Dim2> {
 fn disc() -> World<Dim2> {
     let mut world = floating();
     let grid = VoxelGrid::ball(64, 1.0).unwrap();
-    world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+    world
+        .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+        .unwrap();
     world
 }
 
@@ -262,7 +264,7 @@ fn empty_worlds_and_skinless_bodies_render_in_every_size() {
         Law::default(),
         Grading::Coarse,
     );
-    coarse.add_soft_body(body.unwrap());
+    coarse.add_soft_body(body.unwrap()).unwrap();
     let elements = Look::Elements {
         colour: ElementColour::Level,
         ages: &[],
@@ -325,7 +327,7 @@ fn vertices_beyond_the_buffer_limit_are_dropped() {
         Law::default(),
         Grading::Uniform,
     );
-    world.add_soft_body(body.unwrap());
+    world.add_soft_body(body.unwrap()).unwrap();
     let mut renderer = Renderer::new(&device, TextureFormat::Rgba8Unorm);
     let size = [96, 96];
     let mut frame = Frame::new(Camera::fit(Vec2::ZERO, Vec2::ONE, size), &PALETTE);

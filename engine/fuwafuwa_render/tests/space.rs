@@ -75,7 +75,9 @@ fn floating() -> World<Dim3> {
 fn ball() -> World<Dim3> {
     let mut world = floating();
     let grid = VoxelGrid::ball(32, 1.0).unwrap();
-    world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+    world
+        .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+        .unwrap();
     world
 }
 
@@ -249,7 +251,9 @@ fn sticker_is_visible_from_its_side_and_not_through_a_bar() {
 fn ghost_is_transparent_and_hidden_by_an_equal_body() {
     let (world, mut ghost) = (floating(), floating());
     let grid = VoxelGrid::ball(16, 1.0).unwrap();
-    ghost.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+    ghost
+        .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+        .unwrap();
     let middle = |world: &World<Dim3>, ghost| {
         let picture = take(world, TextureFormat::Rgba8Unorm, |frame| {
             frame.ghost = ghost

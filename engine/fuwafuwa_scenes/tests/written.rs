@@ -207,11 +207,13 @@ fn check_torn<D: Dim>() {
         ..Material::default()
     };
     let grid = VoxelGrid::<D>::ball(8, 0.5).unwrap();
-    let ball = world.add_soft_body(
-        SoftBody::new(grid, &[soft])
-            .unwrap()
-            .translated(at(0.0, 1.2, 0.0)),
-    );
+    let ball = world
+        .add_soft_body(
+            SoftBody::new(grid, &[soft])
+                .unwrap()
+                .translated(at(0.0, 1.2, 0.0)),
+        )
+        .unwrap();
     let cube = Shape::cuboid(D::Vector::splat(0.1)).translated(at(0.2, 2.5, 0.2));
     let turned = Rotation::about(Vec3::new(1.0, 1.0, 0.0), 0.4);
     world
@@ -387,7 +389,9 @@ fn error_names_line_and_field() {
 fn of_world_keeps_joint_positions_after_motion() {
     let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let grid = VoxelGrid::<Dim2>::cube(8, 0.5).unwrap();
-    let cube = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+    let cube = world
+        .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+        .unwrap();
     let point = Vec2::new(0.25, 0.5);
     let on_cube = JointAnchor::on(cube, point).within(0.1);
     world
@@ -413,7 +417,7 @@ fn text_rejects_too_long_scene() {
     let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
     let grid = VoxelGrid::<Dim3>::ball(40, 1.0).unwrap();
     let ball = SoftBody::new(grid, &[Material::default()]).unwrap();
-    let id = world.add_soft_body(ball);
+    let id = world.add_soft_body(ball).unwrap();
     assert!(
         Scene::of_world(&world).unwrap().text().is_ok(),
         "an intact body has a short text"

@@ -93,7 +93,7 @@ fn add_body<D: Dimension>(world: &mut World, entity: Entity) -> Result<Entry, Pr
     let velocity = world.get::<Velocity>(entity).copied();
     let gravity = world.get::<GravityScale>(entity).copied();
     let mut soft_world = world.resource_mut::<SoftWorld<D>>();
-    let id = soft_world.add_body(entity, body);
+    let id = soft_world.add_body(entity, body)?;
     let engine = soft_world.engine_mut();
     let mut outcome = Ok(());
     if let Some(velocity) = velocity {

@@ -119,8 +119,8 @@ pub mod prelude {
         TargetPosition, Velocity,
     };
     pub use crate::message::{
-        ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, JointBroke, NodeSplit,
-        PieceDetached, Rejection, Removed, SensorEntered, SensorExited, WokeUp,
+        ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, JointBroke, LeftRange,
+        NodeSplit, Overlapped, PieceDetached, Rejection, Removed, SensorEntered, SensorExited, WokeUp,
     };
     pub use crate::{
         FuwafuwaPlugin, FuwafuwaPlugin2d, FuwafuwaPlugin3d, FuwafuwaSystems, Rejected, RigidBody2d,

@@ -159,6 +159,26 @@ pub struct ImpactSlowed {
     pub share: f32,
 }
 
+/// Two bodies were placed inside each other, and are moved apart.
+#[derive(Message, Copy, Clone, Debug, PartialEq)]
+pub struct Overlapped {
+    /// The two bodies.
+    pub pair: [Entity; 2],
+    /// Pieces of the two bodies, in the order of `pair`; `None` for a rigid body.
+    pub pieces: [Option<PieceId>; 2],
+    /// Depth of the overlap [m].
+    pub depth: f32,
+}
+
+/// A body left the range of positions in which its shape is right, or a rigid body was stopped at the limit.
+#[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
+pub struct LeftRange {
+    /// The soft or rigid body.
+    pub body: Entity,
+    /// The piece; `None` for a rigid body.
+    pub piece: Option<PieceId>,
+}
+
 /// A piece got non-finite positions or velocities and was stopped permanently.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Quarantined {

@@ -4,7 +4,8 @@ use crate::convert::bevy_vector;
 use crate::dimension::Dimension;
 use crate::message::{
     ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, ImpactSlowed, JointBroke,
-    NodeSplit, PieceDetached, Quarantined, Removed, SensorEntered, SensorExited, WokeUp,
+    LeftRange, NodeSplit, Overlapped, PieceDetached, Quarantined, Removed, SensorEntered,
+    SensorExited, WokeUp,
 };
 use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;
@@ -22,6 +23,8 @@ pub struct Writers<'w> {
     woke_up: MessageWriter<'w, WokeUp>,
     impact_slowed: MessageWriter<'w, ImpactSlowed>,
     quarantined: MessageWriter<'w, Quarantined>,
+    overlapped: MessageWriter<'w, Overlapped>,
+    left_range: MessageWriter<'w, LeftRange>,
     contact_started: MessageWriter<'w, ContactStarted>,
     contact_ended: MessageWriter<'w, ContactEnded>,
     sensor_entered: MessageWriter<'w, SensorEntered>,
@@ -167,6 +170,18 @@ impl Writers<'_> {
                 let body = of_body(body)?;
                 self.impact_slowed
                     .write(ImpactSlowed { body, piece, share });
+            }
+            Event::Overlapped { pair, depth } => {
+                let [(first, own), (second, other)] = both(pair)?;
+                self.overlapped.write(Overlapped {
+                    pair: [first, second],
+                    pieces: [own, other],
+                    depth,
+                });
+            }
+            Event::LeftRange { object } => {
+                let (body, piece) = of(object)?;
+                self.left_range.write(LeftRange { body, piece });
             }
             Event::Quarantined { body, piece } => {
                 let body = of_body(body)?;

@@ -195,10 +195,10 @@ impl<D: Dimension> SoftWorld<D> {
         &mut self,
         entity: Entity,
         body: fuwafuwa::SoftBody<D>,
-    ) -> SoftBodyHandle {
-        let id = self.engine.add_soft_body(body);
+    ) -> Result<SoftBodyHandle, Error> {
+        let id = self.engine.add_soft_body(body)?;
         self.bodies.add(entity, id);
-        id
+        Ok(id)
     }
 
     pub(crate) fn add_rigid(

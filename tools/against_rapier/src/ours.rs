@@ -38,7 +38,7 @@ pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> 
     let floor = Shape::half_space(D::Vector::Y, D::Vector::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor).with_friction(scene.friction))?;
     let lowest = span(&body).lowest;
-    world.add_soft_body(body.translated(D::Vector::Y * (scene.height - lowest)));
+    world.add_soft_body(body.translated(D::Vector::Y * (scene.height - lowest))).unwrap();
     Ok(world)
 }
 

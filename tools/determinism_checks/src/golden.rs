@@ -78,7 +78,9 @@ fn torn_world<D: Dim>(n: usize) -> (World<D>, RigidBodyHandle) {
         .expect("the scene is valid");
     let ball = VoxelGrid::ball(n, 1.0).expect("the scene is valid");
     let body = SoftBody::new(ball, &[Material::default()]).expect("the scene is valid");
-    world.add_soft_body(body.translated(vector::<D>(0.0, 0.05, 0.0)));
+    world
+        .add_soft_body(body.translated(vector::<D>(0.0, 0.05, 0.0)))
+        .unwrap();
     let hand = RigidBody::coupled(Shape::ball(0.08)).at(vector::<D>(-0.3, 0.5, 0.5));
     let hand = world.add_rigid_body(hand).expect("the scene is valid");
     (world, hand)
@@ -107,7 +109,7 @@ fn hash_of_heap() -> u64 {
     let mut world = floor(settings);
     let ball = VoxelGrid::ball(12, 1.0).expect("the scene is valid");
     let body = SoftBody::new(ball, &[Material::default()]).expect("the scene is valid");
-    let ball = world.add_soft_body(body);
+    let ball = world.add_soft_body(body).unwrap();
     for (height, slant) in [(0.3, 0.2), (0.6, -0.3)] {
         let corner = Vec3::new(-1.0, height - slant, -1.0);
         let along = Vec3::new(3.0, 3.0 * slant, 0.0);
@@ -147,7 +149,9 @@ fn hash_of_paper_law<D: Dim>(n: usize) -> u64 {
     let materials = [Material::default()];
     let body = SoftBody::with_options(ball, &materials, Law::Endo2004, Grading::Graded)
         .expect("the scene is valid");
-    world.add_soft_body(body.translated(vector::<D>(0.0, 0.05, 0.0)));
+    world
+        .add_soft_body(body.translated(vector::<D>(0.0, 0.05, 0.0)))
+        .unwrap();
     for _ in 0..30 {
         world.step();
     }

@@ -253,7 +253,8 @@ fn drop_in<D: Dim>(grid: VoxelGrid<D>) {
     }
     let mut world = World::new(WorldConfig::default()).expect("the default settings are valid");
     if let Ok(body) = SoftBody::new(grid, &[Material::default(); 255]) {
-        world.add_soft_body(body);
+        let added = world.add_soft_body(body);
+        added.expect("a body at the origin is in range");
         step(&mut world);
     }
 }

@@ -180,7 +180,7 @@ fn tied<D: Dim>() -> Vec<u8> {
         World::<D>::new(WorldConfig::default()).expect("the default settings are valid");
     let ball = VoxelGrid::ball(FEW, 1.0).expect("a small ball is a valid grid");
     let ball = SoftBody::new(ball, &[Material::default()]).expect("the material is given");
-    let body = world.add_soft_body(ball);
+    let body = world.add_soft_body(ball).unwrap();
     let vector = |x: f32, y: f32, z: f32| D::Vector::from_vec3(Vec3::new(x, y, z));
     let cube = |height: f32| {
         let half = D::Vector::splat(0.2);

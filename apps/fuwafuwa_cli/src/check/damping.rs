@@ -311,7 +311,7 @@ fn vibration<D: Dim>(
         gravity: D::Vector::ZERO,
         ..WorldConfig::default()
     })?;
-    let id = world.add_soft_body(body);
+    let id = world.add_soft_body(body)?;
     let acting = law(&world.acting_damping(id)?);
     let ratio = |frequency: f64| f64::from(acting.ratio((frequency / TAU) as f32));
     let tick = f64::from(DEFAULT_TICK);

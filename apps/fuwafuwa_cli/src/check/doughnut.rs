@@ -66,7 +66,7 @@ fn squeeze<D: Dim>(n: usize, speed: f32) -> Result<f64> {
     };
     let grid = VoxelGrid::<D>::ring(n, 1.0)?;
     let (voxel, plane) = (grid.voxel_size(), plane_of(&grid));
-    let ring = world.add_soft_body(SoftBody::new(grid, &[material])?);
+    let ring = world.add_soft_body(SoftBody::new(grid, &[material])?)?;
     let sides = [-1.0, 1.0];
     let middle_of = |side: f32, apart: f32| {
         let height = 0.5 + side * (HAND + 0.5 * apart);

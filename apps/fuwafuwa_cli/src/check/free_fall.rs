@@ -49,7 +49,7 @@ fn worst<D: Dim>(n: usize, width: f32, speed: f32) -> Result<f64> {
     let ticks = (SECONDS.min(DISTANCE * width / speed) / tick).ceil();
     let mut world = World::<D>::new(config)?;
     let body = SoftBody::new(VoxelGrid::ball(n, width)?, &[Material::default()])?;
-    let body = world.add_soft_body(body);
+    let body = world.add_soft_body(body)?;
     let linear = D::Vector::from_vec3(Vec3::new(speed, 0.0, 0.0));
     throw(&mut world, body, linear)?;
     let start = centre(&world[body]);

@@ -98,7 +98,7 @@ fn fall<D: Dim>(
         let shift = 0.008 * WIDTH * ((1 + layer * 7 + place * 3) % 11) as f32;
         let at = [x as f32, layer as f32 + 0.05, z as f32].map(|k| k * pitch + shift);
         let body = SoftBody::new(grid, &[material])?;
-        world.add_soft_body(body.translated(D::Vector::from_vec3(Vec3::from(at))));
+        world.add_soft_body(body.translated(D::Vector::from_vec3(Vec3::from(at))))?;
     }
     let mut heap = Heap {
         asleep: f64::INFINITY,

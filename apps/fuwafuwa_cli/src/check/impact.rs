@@ -127,7 +127,7 @@ fn add_ball<D: Dim>(
     [x, y]: [f32; 2],
     speed: f32,
 ) -> Result<SoftBodyHandle> {
-    let body = world.add_soft_body(SoftBody::new(VoxelGrid::ball(n, width)?, &[material()])?);
+    let body = world.add_soft_body(SoftBody::new(VoxelGrid::ball(n, width)?, &[material()])?)?;
     let at = centre(&world[body]).as_vec3();
     world.translate(body, vector::<D>(x, y, 0.0) - D::Vector::from_vec3(at))?;
     throw(world, body, vector::<D>(0.0, speed, 0.0))?;
@@ -222,7 +222,7 @@ fn pinned<D: Dim>(speed: f32) -> Result<f64> {
         strength: f32::INFINITY,
         ..Material::default()
     };
-    let body = world.add_soft_body(SoftBody::new(VoxelGrid::ball(n, 1.0)?, &[unbreakable])?);
+    let body = world.add_soft_body(SoftBody::new(VoxelGrid::ball(n, 1.0)?, &[unbreakable])?)?;
     let at = D::Vector::from_vec3(centre(&world[body]).as_vec3());
     let carrier = world.add_rigid_body(
         RigidBody::kinematic(Shape::Ball {

@@ -4,16 +4,19 @@ mod beam;
 mod damping;
 mod doughnut;
 mod energy;
+mod far;
 mod free_fall;
 mod heap;
 mod impact;
 mod momentum;
 mod motion;
+mod overlap;
 mod parallel;
 mod patch;
 mod period;
 mod pile;
 mod random;
+mod reaction;
 mod sag;
 mod slope;
 mod slow;
@@ -73,6 +76,12 @@ enum Which {
     FreeFall,
     /// Fast bodies must not pass through a plate, must keep their momentum, and a pin on a fast carrier must hold.
     Impact,
+    /// Far from the origin, bodies must keep their shape, up to the distance at which they are refused.
+    Far,
+    /// Supports must carry the weight of sleeping bodies, and stretched bars must pull as in theory.
+    Reaction,
+    /// Objects placed inside each other must come apart.
+    Overlap,
     /// All checks.
     All,
 }
@@ -81,7 +90,7 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 16] = [
+    let checks: [(Which, Check); 19] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
@@ -98,6 +107,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         (Which::Doughnut, doughnut::check),
         (Which::FreeFall, free_fall::check),
         (Which::Impact, impact::check),
+        (Which::Far, far::check),
+        (Which::Reaction, reaction::check),
+        (Which::Overlap, overlap::check),
     ];
     let mut outcomes = Vec::new();
     for (name, check) in checks {

@@ -143,7 +143,7 @@ pub fn slide<D: Dim>(rigid: bool, friction: f32, slope: f32, duration: f64) -> R
         let cells = [VOXELS, VOXELS / 2, D::depth(VOXELS)];
         let grid = VoxelGrid::from_fn(cells, LENGTH / VOXELS as f32, |_| 1)?;
         let block = SoftBody::new(grid, &[material])?;
-        world.add_soft_body(block.rotated_about(turn, D::Vector::ZERO));
+        world.add_soft_body(block.rotated_about(turn, D::Vector::ZERO))?;
     }
     let ticks = (60.0 * duration) as usize;
     let (mut before, mut half, mut now) = (0.0, 0.0, centre(&world));

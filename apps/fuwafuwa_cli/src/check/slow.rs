@@ -90,7 +90,7 @@ fn sag(progress: &Progress) -> Result<f64> {
         .expect("the beam has a corner");
     let expected = statics.solve(&load, vec![0.0; load.len()], progress)?[tip.index() * 2 + 1];
     let start = f64::from(body.node_state(tip).0.y);
-    let body = world.add_soft_body(body);
+    let body = world.add_soft_body(body)?;
     for _ in 0..60 * SAGGING {
         world.step();
         progress.show_if_slow();
@@ -113,7 +113,7 @@ fn float<D: Dim>(rigid: bool, seconds: usize) -> Result<f64> {
         world.add_rigid_body(body.with_velocity(velocity))?;
     } else {
         let body = SoftBody::new(VoxelGrid::ball(8, 1.0)?, &[Material::default()])?;
-        world.add_soft_body(body.with_velocity(velocity));
+        world.add_soft_body(body.with_velocity(velocity))?;
     }
     let centre = |world: &World<D>| -> f64 {
         let soft = world.soft_bodies().map(|(_, body)| body.centre_of_mass());

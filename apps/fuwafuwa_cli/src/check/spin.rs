@@ -166,7 +166,7 @@ fn spinning<D: Dim>(n: usize, material: Material) -> Result<(World<D>, SoftBodyH
         max_substeps: 1024,
         ..WorldConfig::default()
     })?;
-    let id = world.add_soft_body(body);
+    let id = world.add_soft_body(body)?;
     Ok((world, id))
 }
 

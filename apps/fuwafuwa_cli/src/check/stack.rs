@@ -64,7 +64,7 @@ fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {
     };
     for place in 0..bodies {
         let body = SoftBody::new(VoxelGrid::cube(VOXELS, WIDTH)?, &[material])?;
-        world.add_soft_body(body.translated(D::Vector::Y * (WIDTH * place as f32)));
+        world.add_soft_body(body.translated(D::Vector::Y * (WIDTH * place as f32)))?;
     }
     let centres = |world: &World<D>| -> Vec<Vec3> {
         let bodies = world.soft_bodies();

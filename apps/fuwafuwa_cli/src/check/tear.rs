@@ -116,7 +116,7 @@ fn load<D: Dim>(n: usize, notch: Option<&Blade<D>>) -> Result<f64> {
         max_substeps: 256,
         ..WorldConfig::default()
     })?;
-    let bar = world.add_soft_body(body);
+    let bar = world.add_soft_body(body)?;
     let mut peak = 0.0f64;
     for _ in 0..6000 {
         world.step();

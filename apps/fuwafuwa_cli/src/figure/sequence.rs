@@ -36,7 +36,7 @@ pub fn disc() -> Result<(Painter, Vec<Pixmap>)> {
         let wall = Shape::cuboid(Vec2::new(0.08, 0.2)).translated(Vec2::new(x - 0.05 * lean, 0.2));
         world.add_rigid_body(RigidBody::fixed(wall).with_friction(0.4))?;
     }
-    world.add_soft_body(SoftBody::new(VoxelGrid::ball(40, 1.0)?, &[material])?);
+    world.add_soft_body(SoftBody::new(VoxelGrid::ball(40, 1.0)?, &[material])?)?;
     let hand = RigidBody::kinematic(Shape::ball(0.055)).at(Vec2::new(0.46, 1.2));
     let hand = world.add_rigid_body(hand)?;
 
@@ -80,7 +80,7 @@ pub fn ball() -> Result<(Painter, Vec<Pixmap>)> {
     world.add_rigid_body(RigidBody::fixed(floor).with_friction(1.0))?;
     let low = -1.0 / ACROSS as f32;
     let body = SoftBody::new(VoxelGrid::ball(ACROSS, 1.0)?, &[material])?;
-    let ball = world.add_soft_body(body.translated(Vec3::new(0.0, low, 0.0)));
+    let ball = world.add_soft_body(body.translated(Vec3::new(0.0, low, 0.0)))?;
     let progress = Progress::new();
     progress.expect(TICKS as u64);
     let (mut skins, mut sections) = (Vec::new(), Vec::new());

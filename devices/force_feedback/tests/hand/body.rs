@@ -32,7 +32,9 @@ impl Disc {
             ..usual
         };
         let grid = VoxelGrid::ball(12, 1.0).expect("the grid is valid");
-        world.add_soft_body(SoftBody::new(grid, &[material]).expect("the body is valid"));
+        world
+            .add_soft_body(SoftBody::new(grid, &[material]).expect("the body is valid"))
+            .unwrap();
         // The walls form a corner that keeps the disc from rolling away.
         for (normal, at) in [
             (Vec2::NEG_X, Vec2::X),

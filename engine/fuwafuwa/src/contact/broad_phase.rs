@@ -13,6 +13,7 @@ mod contact_spheres;
 mod embedded_spheres;
 mod known_impulse;
 mod node_pairs;
+mod overlapping;
 mod piece_neighbours;
 mod rigid_contacts;
 mod sphere_pair;
@@ -32,6 +33,7 @@ pub use contact_spheres::Spheres;
 pub use embedded_spheres::{EmbeddedSphere, EmbeddedSpheres};
 pub use known_impulse::Impulse;
 pub use node_pairs::{NodePair, NodePairs};
+pub use overlapping::Overlapping;
 pub use rigid_contacts::{PressedContact, RigidContactPoint, RigidContactPoints};
 pub use sphere_pair::MARGIN;
 use sphere_pair::renumber;
@@ -56,6 +58,9 @@ pub struct Nearby {
     /// Spheres embedded in another piece.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub embedded: EmbeddedSpheres,
+    /// Pairs of objects without contacts, because they overlap and are moved apart.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub overlapping: Overlapping,
     /// Remaining time of the tick [s].
     #[cfg_attr(feature = "serde", serde(skip))]
     remaining_time: f32,
@@ -65,7 +70,9 @@ pub struct Nearby {
 }
 
 hash_state! {
-    struct Nearby { nodes, spheres, pairs, rigids } skip { embedded, remaining_time, knows_embedded }
+    struct Nearby { nodes, spheres, pairs, rigids } skip {
+        embedded, overlapping, remaining_time, knows_embedded,
+    }
 }
 
 impl Nearby {

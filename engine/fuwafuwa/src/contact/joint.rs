@@ -14,6 +14,7 @@ use crate::foundation::arena::{RigidBodyHandle, SoftBodyHandle};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::world::BodyHandle;
+pub(crate) use attached_anchor::{corner_of, node_at};
 pub(crate) use joint_end::JointEnd;
 pub use joint_ref::JointRef;
 pub(crate) use joint_state::{JointState, Joints, relax, solve};
@@ -25,7 +26,7 @@ pub(crate) use joint_state::{JointState, Joints, relax, solve};
 ///
 /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
 /// let ball = SoftBody::new(VoxelGrid::ball(12, 1.0)?, &[Material::default()])?;
-/// let ball = world.add_soft_body(ball);
+/// let ball = world.add_soft_body(ball)?;
 /// let top = Vec2::new(0.5, 1.0);
 /// let anchor = JointAnchor::on(ball, top).within(0.2);
 /// let nail = world.add_joint(Joint::pin(anchor, JointAnchor::Point(top)))?;

@@ -12,7 +12,7 @@ mod escape_contact;
 mod rigid_contact_rows;
 mod solver_velocities;
 
-use crate::contact::broad_phase::{ContactSphere, MARGIN, Nearby, NodePairs};
+use crate::contact::broad_phase::{ContactSphere, MARGIN, Nearby};
 use crate::contact::rest_speeds::RestSpeeds;
 use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::{Dim, inner};
@@ -78,11 +78,16 @@ impl Contacts {
     ) -> Hits {
         let mut hits = Hits::default();
         self.velocities.clear(bodies);
-        self.find_nodes(bodies, rigids, &mut nearby.nodes, rest, duration, &mut hits);
+        self.find_nodes(bodies, rigids, nearby, rest, duration, &mut hits);
         self.find_spheres(bodies, nearby, rest, duration, &mut hits.pieces);
         self.exits.clear();
         let (spheres, velocities) = (&nearby.spheres, &mut self.velocities);
-        let exits = nearby.embedded.list.iter();
+        let overlapping = &nearby.overlapping;
+        let has_overlaps = !overlapping.is_empty();
+        let exits = nearby.embedded.list.iter().filter(|embedded| {
+            let both = [embedded.sphere, embedded.exit].map(|sphere| &spheres.list[sphere]);
+            !has_overlaps || !overlapping.has_spheres(both)
+        });
         let exits = exits.filter_map(|embedded| {
             EscapeContact::new(embedded, bodies, spheres, velocities, duration)
         });
@@ -98,12 +103,14 @@ impl Contacts {
         &mut self,
         bodies: &SoftBodies<D>,
         rigids: &RigidBodies,
-        pairs: &mut NodePairs,
+        nearby: &mut Nearby,
         rest: RestSpeeds,
         duration: f32,
         hits: &mut Hits,
     ) {
         self.nodes.clear();
+        let (pairs, overlapping) = (&mut nearby.nodes, &nearby.overlapping);
+        let has_overlaps = !overlapping.is_empty();
         let travel = pairs.travel;
         let shares = threads::chunks(&mut pairs.list);
         let found = threads::map(shares, move |(first, pairs)| {
@@ -114,6 +121,11 @@ impl Contacts {
                 let (node, moves) = (pair.node, rigid.moves());
                 // Sleeping nodes have contacts with moving rigid bodies only.
                 if body.inverse_masses()[node] == 0.0 && !moves {
+                    pair.impulse.clear();
+                    continue;
+                }
+                let piece = || (pair.body, body.pieces().of_node(node));
+                if has_overlaps && overlapping.has_rigid(piece(), pair.rigid) {
                     pair.impulse.clear();
                     continue;
                 }
@@ -203,6 +215,8 @@ impl Contacts {
         let layers = |sphere: &ContactSphere| bodies.at(sphere.body).layers();
         let meet = |both: [&ContactSphere; 2]| layers(both[0]).meet(layers(both[1]));
         let (all, embedded) = (&nearby.spheres, &nearby.embedded);
+        let overlapping = &nearby.overlapping;
+        let has_overlaps = !overlapping.is_empty();
         // Borrows the centres as a slice: indexing the `IndexVec` would load its pointer again for each pair.
         let centres = all.centres.as_slice();
         let widths = bodies.iter().map(|body| body.grid().voxel_size());
@@ -226,7 +240,9 @@ impl Contacts {
                     pair.impulse.clear();
                     continue;
                 }
-                if has_layers && !meet(both) {
+                let is_excluded =
+                    has_layers && !meet(both) || has_overlaps && overlapping.has_spheres(both);
+                if is_excluded {
                     pair.met_in_front = false;
                     pair.impulse.clear();
                     continue;
@@ -368,18 +384,21 @@ impl Contacts {
                 .impulse
                 .store(contact);
         }
-        let pressed = self.dynamic.iter().filter_map(DynamicContact::pressed);
-        nearby.rigids.pressed.extend(pressed);
+        for row in &mut self.dynamic {
+            row.pressing = row.contact.normal_impulse;
+        }
         nearby
             .rigids
             .renew(self.dynamic.iter().map(DynamicContact::touch));
     }
 
-    /// Removes the velocity by which overlaps were resolved. Follows the position update.
+    /// Removes the velocity by which overlaps were resolved, and adds the impulses of the substep to the sums
+    /// of the tick. Follows the position update.
     pub fn relax<D: Dim>(
         &mut self,
         bodies: &mut SoftBodies<D>,
         rigids: &mut RigidBodies,
+        nearby: &mut Nearby,
         duration: f32,
     ) {
         let velocities = &mut self.velocities;
@@ -407,12 +426,19 @@ impl Contacts {
             row.relax::<D>(rigids, duration);
         }
         velocities.store(bodies);
-        for row in &self.nodes {
-            if let Some((mover, lever)) = row.mover {
-                let impulse = row.contact.start().xyz() * (-1.0 / duration);
+        for NodeContact { contact, mover, .. } in &self.nodes {
+            let impulse = contact.start();
+            nearby.nodes.list[contact.pair as usize].impulse.sum += impulse;
+            if let Some((mover, lever)) = *mover {
+                let impulse = impulse.xyz() * (-1.0 / duration);
                 rigids.at_mut(mover).add_torque(lever.cross(impulse));
             }
         }
+        for SphereContact { contact, .. } in &self.spheres {
+            nearby.pairs.list[contact.pair as usize].impulse.sum += contact.start();
+        }
+        let pressed = self.dynamic.iter().filter_map(DynamicContact::pressed);
+        nearby.rigids.pressed.extend(pressed);
     }
 }
 

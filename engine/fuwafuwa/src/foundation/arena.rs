@@ -40,7 +40,7 @@ macro_rules! handle {
 
         impl $name {
             /// Index of the slot in the arena.
-            #[allow(dead_code)] // unused for joints and knives
+            #[allow(dead_code)] // unused for joints, knives and grips
             pub(crate) fn slot(self) -> $slot {
                 self.slot
             }
@@ -88,6 +88,12 @@ id! {
     pub KnifeSlot
 }
 
+id! {
+    /// Slot of a grip in a world; reused after the grip is removed.
+    #[doc(hidden)]
+    pub GripSlot
+}
+
 impl BodySlot {
     /// Slot of a body that is in no world.
     pub(crate) const NONE: Self = Self(u32::MAX);
@@ -112,6 +118,11 @@ handle! {
 handle! {
     /// Handle of a knife in a [`World`](crate::World). Adding or removing other knives does not change it.
     KnifeHandle, "knife", KnifeSlot
+}
+
+handle! {
+    /// Handle of a grip in a [`World`](crate::World). Adding or removing other grips does not change it.
+    GripHandle, "grip", GripSlot
 }
 
 /// Generational arena: items by handle, iterated in the order of their slots.

@@ -178,6 +178,7 @@ dim_vector!(Vec3, 3, |vector: Vec3| vector, |vector: Vec3| vector);
 pub trait DimAngular:
     sealed::Sealed
     + sealed::Stored
+    + HashState
     + Copy
     + Debug
     + Default

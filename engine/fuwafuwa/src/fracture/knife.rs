@@ -37,7 +37,7 @@ pub(crate) use knife_state::{KnifeState, Knives};
 ///
 /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
 /// world.add_rigid_body(RigidBody::fixed(Shape::half_space(Vec2::Y, Vec2::ZERO)))?;
-/// world.add_soft_body(SoftBody::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?);
+/// world.add_soft_body(SoftBody::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?)?;
 /// let start = Vec2::new(0.53, 1.2);
 /// let hand = RigidBody::coupled(Shape::ball(0.05)).at(start);
 /// // As a sensor, the hand passes through the body, and only the edge touches it.

@@ -16,6 +16,20 @@ impl RigidState {
         matches!(self.motion_type, MotionType::Dynamic { .. })
     }
 
+    /// Returns the mass of a dynamic body [kg], also while it sleeps; `None` for all other bodies.
+    pub(crate) fn dynamic_mass(&self) -> Option<f32> {
+        match self.motion_type {
+            MotionType::Dynamic { mass } => Some(mass),
+            _ => None,
+        }
+    }
+
+    /// Translates the body by `by` [m], and adds a velocity [m/s].
+    pub(crate) fn shift(&mut self, by: Vec3, velocity: Vec3) {
+        self.velocity += velocity;
+        self.move_to(self.position + by, self.rotation);
+    }
+
     /// Returns whether the body is dynamic and asleep.
     pub fn is_asleep(&self) -> bool {
         self.asleep
@@ -160,21 +174,31 @@ impl RigidState {
         self.angular_velocity *= kept;
     }
 
-    /// Integrates position and rotation over `duration` [s].
-    pub(crate) fn integrate_pose(&mut self, duration: f32) {
+    /// Returns the position and the rotation of the body after `duration` [s] at its present velocity.
+    pub(crate) fn pose_after(&self, duration: f32) -> (Vec3, Rotation) {
         if !self.moves() {
-            return;
+            return (self.position, self.rotation);
         }
         let position = self.position + self.velocity * duration;
         if self.angular_velocity == Vec3::ZERO {
-            return self.move_to(position, self.rotation);
+            return (position, self.rotation);
         }
         let way = Rotation::about(
             self.angular_velocity,
             self.angular_velocity.length() * duration,
         );
-        let rotation = self.rotation.then(way);
-        if let Some(inertia) = &self.inertia {
+        (position, self.rotation.then(way))
+    }
+
+    /// Integrates position and rotation over `duration` [s].
+    pub(crate) fn integrate_pose(&mut self, duration: f32) {
+        if !self.moves() {
+            return;
+        }
+        let (position, rotation) = self.pose_after(duration);
+        if let Some(inertia) = &self.inertia
+            && self.angular_velocity != Vec3::ZERO
+        {
             // No torque acts, so the angular momentum is preserved. The inertia about the world axes has
             // changed with the rotation, so the angular velocity changes.
             self.angular_velocity =

@@ -280,8 +280,9 @@ impl RigidState {
     }
 
     /// Ends a tick: the target stops, and a kinematic or coupled body takes its target rotation. A body that
-    /// is non-finite or out of range is reset to its pose at the start of the tick, with velocity 0.
-    pub(crate) fn end_tick(&mut self) {
+    /// is non-finite or out of range is reset to its pose at the start of the tick, with velocity 0. Returns
+    /// whether the body was reset.
+    pub(crate) fn end_tick(&mut self) -> bool {
         self.target_now = self.target_at_tick_end;
         if self.follows_target() && self.rotation != self.target_rotation {
             self.move_to(self.position, self.target_rotation);
@@ -290,11 +291,13 @@ impl RigidState {
             self.angular_velocity = Vec3::ZERO;
         }
         let is_finite = self.velocity.is_finite() && self.angular_velocity.is_finite();
-        if !is_finite || !is_within_reach(self.position) {
+        let is_out = !is_finite || !is_within_reach(self.position);
+        if is_out {
             self.move_to(self.position_before, self.rotation_before);
             (self.velocity, self.angular_velocity) = (Vec3::ZERO, Vec3::ZERO);
             self.reactions.fill(ReactionSum::default());
         }
+        is_out
     }
 
     /// Starts a substep of `duration` [s]: moves the target by its velocity, and appends an empty reaction.

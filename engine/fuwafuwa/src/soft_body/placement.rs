@@ -2,16 +2,32 @@
 
 use super::SoftBody;
 use super::body_state::State;
+use crate::error::Error;
 use crate::foundation::dim::{Dim, DimVector, turning};
-use crate::foundation::ids::NodeId;
+use crate::foundation::ids::{NodeId, PieceId};
 use crate::math::rotation::Rotation;
 use crate::math::twist::Twist;
 use crate::math::velocity::Velocity;
 use crate::rigid_body::layers::Layers;
 use crate::rigid_body::solid::flat;
+use crate::rigid_body::{range_of, require_in_range};
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::momentum::{Momentum, RigidMotion, centre_of};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
+use std::collections::BTreeSet;
+
+/// Motion of a piece as a whole.
+#[derive(Copy, Clone, Debug, Default)]
+pub(crate) struct WholePiece {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Centre of mass [m].
+    pub centre: DVec3,
+    /// Velocity of the centre of mass [m/s].
+    pub velocity: DVec3,
+    /// Whether the piece has fixed nodes or is quarantined.
+    pub is_held: bool,
+}
 
 impl<D: Dim> SoftBody<D> {
     /// Collision layers of the body: see [`World::set_layers`](crate::World::set_layers).
@@ -30,8 +46,46 @@ impl<D: Dim> SoftBody<D> {
         self.state.gravity_scale
     }
 
-    /// Returns the body translated by `by` [m]. Pieces whose positions become non-finite are quarantined in
-    /// their first tick.
+    /// Largest absolute coordinate [m] at which the body may be [added](crate::World::add_soft_body) to a world
+    /// or moved by hand: 8192 voxels, 128 m for voxels of 1/64 m. Up to there, rounding in single precision
+    /// changes the shape of the body at rest by less than 1 % of a voxel. A piece that moves beyond it by
+    /// itself is reported, see [`Event::LeftRange`](crate::Event::LeftRange).
+    pub fn range(&self) -> f32 {
+        range_of(self.topology.grid.voxel_size())
+    }
+
+    /// Returns an error if a node is out of [range](SoftBody::range) after `moved` maps its position [m].
+    pub(crate) fn check_range(&self, moved: impl Fn(Vec3) -> Vec3) -> Result<(), Error> {
+        let size = self.topology.grid.voxel_size();
+        let mut nodes = self.topology.mesh.nodes();
+        nodes.try_for_each(|(id, _)| {
+            let at = flat::<D>(moved(self.state.position[id].xyz()));
+            require_in_range(at, size, "the voxels")
+        })
+    }
+
+    /// Returns the pieces that left the [range](SoftBody::range) since the start of the tick.
+    pub(crate) fn pieces_out_of_range(&self) -> Vec<PieceId> {
+        let range = self.range();
+        let is_out = |at: Row| at.xyz().abs().max_element() > range;
+        let out = self.cache.awake.iter();
+        let out = out.filter(|&&id| is_out(self.state.position[id]));
+        let mut pieces: Vec<PieceId> = out.map(|&id| self.topology.pieces.of_node(id)).collect();
+        pieces.sort_unstable();
+        pieces.dedup();
+        if pieces.is_empty() {
+            return pieces;
+        }
+        let nodes = self.topology.mesh.nodes();
+        let were_out = nodes.filter(|&(id, node)| is_out(self.position_before(id, node.at)));
+        let were_out: BTreeSet<PieceId> = were_out
+            .map(|(id, _)| self.topology.pieces.of_node(id))
+            .collect();
+        pieces.retain(|piece| !were_out.contains(piece));
+        pieces
+    }
+
+    /// Returns the body translated by `by` [m].
     #[inline(never)]
     pub fn translated(mut self, by: D::Vector) -> Self {
         self.shift(by.to_vec3());
@@ -39,8 +93,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Returns the body rotated about `point` [m] as a rigid body, without strain. In 2D, only the part of
-    /// the rotation about the third axis is applied. Pieces whose positions become non-finite are quarantined
-    /// in their first tick.
+    /// the rotation about the third axis is applied.
     ///
     /// ```
     /// use fuwafuwa::{SoftBody, Dim2, Material, Rotation, VoxelGrid};
@@ -144,6 +197,37 @@ impl<D: Dim> SoftBody<D> {
             *row = Row::from(rotation.apply(row.xyz()));
         }
         batches.rotate(rotation);
+    }
+
+    /// Translates a piece by `by` [m], and adds a velocity [m/s].
+    pub(crate) fn shift_piece(&mut self, piece: PieceId, by: Vec3, velocity: Vec3) {
+        for (id, _) in self.topology.mesh.nodes() {
+            if self.topology.pieces.of_node(id) == piece {
+                add::<D>(&mut self.state.position[id], by);
+                add::<D>(&mut self.state.ahead[id], by);
+                add::<D>(&mut self.state.velocity[id], velocity);
+            }
+        }
+    }
+
+    /// Returns the motion of a piece as a whole.
+    pub(crate) fn motion_of_piece(&self, piece: PieceId) -> WholePiece {
+        let mut motion = WholePiece {
+            is_held: self.topology.pieces.list[piece].quarantined,
+            ..WholePiece::default()
+        };
+        for (id, _) in self.topology.mesh.nodes() {
+            if self.topology.pieces.of_node(id) == piece {
+                let mass = f64::from(self.state.mass[id]);
+                motion.mass += mass;
+                motion.centre += self.state.position[id].xyz().as_dvec3() * mass;
+                motion.velocity += self.state.velocity[id].xyz().as_dvec3() * mass;
+                motion.is_held |= self.state.fixed[id];
+            }
+        }
+        motion.centre /= motion.mass;
+        motion.velocity /= motion.mass;
+        motion
     }
 
     /// Returns the velocity of the centre of mass [m/s], and the angular velocity [rad/s] that a rigid body

@@ -82,7 +82,7 @@ impl<D: Dim> SoftBody<D> {
     /// relative to the recorded position of the nearest node of its elements, or at its rest position if no
     /// such node is recorded. Nodes of other elements are not used, because lattice neighbours across a crack
     /// may be far apart.
-    fn position_before(&self, id: NodeId, at: Point) -> Row {
+    pub(super) fn position_before(&self, id: NodeId, at: Point) -> Row {
         let was = |id: NodeId, at: Point| {
             let known = self.cache.before.get(id.index());
             known.filter(|(point, row)| *point == at && row.is_finite())

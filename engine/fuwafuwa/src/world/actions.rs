@@ -25,7 +25,8 @@ impl<D: Dim> World<D> {
     /// objects in contact with it wake. Bookmarks of a soft body stay valid, because only positions change.
     ///
     /// # Errors
-    /// [`Error`] if the handle is stale, or a coordinate is not finite or beyond ±1e6 m.
+    /// [`Error`] if the handle is stale, a coordinate is not finite or beyond ±1e6 m, or a soft body would be
+    /// out of its [range](SoftBody::range).
     pub fn translate(&mut self, body: impl Into<BodyHandle>, by: D::Vector) -> Result<(), Error> {
         self.translate_body(body.into(), by.to_vec3())
     }
@@ -34,7 +35,10 @@ impl<D: Dim> World<D> {
     pub(crate) fn translate_body(&mut self, body: BodyHandle, by: Vec3) -> Result<(), Error> {
         let by = within("by", by, "at most 1e6 m on each axis")?;
         match body {
-            BodyHandle::Soft(body) => self.displace(body, |body| body.shift(by)),
+            BodyHandle::Soft(body) => {
+                self.bodies.get(body)?.check_range(|at| at + by)?;
+                self.displace(body, |body| body.shift(by))
+            }
             BodyHandle::Rigid(rigid) => {
                 let body = self.rigids.get(rigid)?;
                 let (position, rotation) = (body.position() + by, body.rotation());
@@ -49,7 +53,8 @@ impl<D: Dim> World<D> {
     /// of the rotation about the third axis is applied.
     ///
     /// # Errors
-    /// [`Error`] if the handle is stale, or a coordinate of the point is not finite or beyond ±1e6 m.
+    /// [`Error`] if the handle is stale, a coordinate of the point is not finite or beyond ±1e6 m, or a soft
+    /// body would be out of its [range](SoftBody::range).
     pub fn rotate_about(
         &mut self,
         body: impl Into<BodyHandle>,
@@ -68,7 +73,11 @@ impl<D: Dim> World<D> {
     ) -> Result<(), Error> {
         let point = within("point", point, "within 1e6 m of the origin")?;
         match body {
-            BodyHandle::Soft(body) => self.displace(body, |body| body.turn(rotation, point)),
+            BodyHandle::Soft(body) => {
+                let turned = |at| rotation.seen_in::<D>().apply_about(at, flat::<D>(point));
+                self.bodies.get(body)?.check_range(turned)?;
+                self.displace(body, |body| body.turn(rotation, point))
+            }
             BodyHandle::Rigid(rigid) => {
                 let rotation = rotation.seen_in::<D>();
                 let body = self.rigids.get(rigid)?;
@@ -103,7 +112,9 @@ impl<D: Dim> World<D> {
         position: Vec3,
         rotation: Rotation,
     ) -> Result<(), Error> {
-        self.change_rigid(rigid, |body| body.set_pose::<D>(position, rotation))
+        self.change_rigid(rigid, |body| body.set_pose::<D>(position, rotation))?;
+        self.overlaps.place(rigid.into());
+        Ok(())
     }
 
     /// Returns the velocity of a body. For a soft body, this is the velocity of the rigid motion with the
@@ -215,7 +226,7 @@ impl<D: Dim> World<D> {
     ///
     /// let grid = VoxelGrid::<Dim2>::ball(16, 1.0)?;
     /// let mut world = World::new(WorldConfig { gravity: Vec2::ZERO, ..WorldConfig::default() })?;
-    /// let ball = world.add_soft_body(SoftBody::new(grid, &[Material::default()])?);
+    /// let ball = world.add_soft_body(SoftBody::new(grid, &[Material::default()])?)?;
     /// world.apply_impulse(ball, Impulse::at(Vec2::splat(0.5), 2.0 * Vec2::X).within(1.0))?;
     /// let momentum = world[ball].momentum().linear.x;
     /// assert!((momentum - 2.0).abs() < 1e-4);
@@ -340,7 +351,9 @@ impl<D: Dim> World<D> {
         self.change_rigid(rigid, |body| {
             body.is_sensor = is_sensor;
             Ok(())
-        })
+        })?;
+        self.overlaps.place(rigid.into());
+        Ok(())
     }
 
     /// Sets the collision layers of a body. The body and sleeping objects in contact with it wake.
@@ -359,10 +372,14 @@ impl<D: Dim> World<D> {
                 self.nearby.nodes.request_full_search();
                 Ok(())
             }
-            BodyHandle::Rigid(rigid) => self.change_rigid(rigid, |body| {
-                body.layers = layers;
+            BodyHandle::Rigid(rigid) => {
+                self.change_rigid(rigid, |body| {
+                    body.layers = layers;
+                    Ok(())
+                })?;
+                self.overlaps.place(rigid.into());
                 Ok(())
-            }),
+            }
         }
     }
 
@@ -495,6 +512,7 @@ impl<D: Dim> World<D> {
         self.wake_soft(id)?;
         places.extend(bounds_of(self.bodies.get(id)?, |_| true));
         self.wake_supported(supported, places);
+        self.overlaps.place(id.into());
         Ok(())
     }
 

@@ -1,10 +1,13 @@
 //! Handles of soft and rigid bodies as one type, and removal by handle.
 
-use super::World;
+use super::{Grip, World};
 use crate::contact::joint::Joint;
 use crate::error::Error;
-use crate::foundation::arena::{Handle, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle};
+use crate::foundation::arena::{
+    GripHandle, Handle, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle,
+};
 use crate::foundation::dim::Dim;
+use crate::foundation::hash::hash_state;
 use crate::fracture::knife::Knife;
 use crate::rigid_body::RigidBody;
 use crate::soft_body::SoftBody;
@@ -19,6 +22,8 @@ pub enum BodyHandle {
     Rigid(RigidBodyHandle),
 }
 
+hash_state! { enum BodyHandle { Soft(body), Rigid(rigid) } }
+
 impl From<SoftBodyHandle> for BodyHandle {
     fn from(body: SoftBodyHandle) -> Self {
         Self::Soft(body)
@@ -31,7 +36,7 @@ impl From<RigidBodyHandle> for BodyHandle {
     }
 }
 
-/// Handle of an item that [`World::remove`] can remove: a soft body, a rigid body, a joint or a knife.
+/// Handle of an item that [`World::remove`] can remove: a soft body, a rigid body, a joint, a knife or a grip.
 pub trait Removable<D: Dim>: Handle {
     /// Type that [`World::remove`] returns for a handle of this type.
     type Item;
@@ -72,12 +77,20 @@ impl<D: Dim> Removable<D> for KnifeHandle {
     }
 }
 
+impl<D: Dim> Removable<D> for GripHandle {
+    type Item = Grip<D>;
+
+    fn remove_from(self, world: &mut World<D>) -> Result<Grip<D>, Error> {
+        world.remove_grip(self)
+    }
+}
+
 impl<D: Dim> World<D> {
-    /// Removes a soft body, a rigid body, a joint or a knife, and returns it. All other objects keep their
+    /// Removes a soft body, a rigid body, a joint, a knife or a grip, and returns it. All other objects keep their
     /// handles and state, except that some wake: sleeping objects in contact with a removed body, and the
-    /// bodies of a removed joint. The rigid body that holds a removed knife stays.
+    /// bodies of a removed joint or grip. The rigid body that holds a removed knife stays.
     ///
-    /// A rigid body, a joint or a knife is returned as its definition, which can be added again under a new
+    /// A rigid body, a joint, a knife or a grip is returned as its definition, which can be added again under a new
     /// handle. The definition of a joint contains the anchor positions at which the joint was added.
     ///
     /// # Errors

@@ -1,16 +1,18 @@
 //! Contact and sensor events of a tick.
 
-use super::World;
+use super::{ReactionForce, World};
+use crate::contact::broad_phase::Impulse;
 use crate::error::Error;
 use crate::event::{Contact, Event};
 use crate::foundation::arena::RigidBodyHandle;
-use crate::foundation::dim::{Dim, DimVector};
+use crate::foundation::dim::{Dim, DimAngular, DimVector};
+use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::object_ref::{ObjectRef, ObjectSelector};
 use crate::rigid_body::solid::{Bounds, Solid};
 use crate::rigid_body::{MotionType, RigidState};
 use crate::soft_body::SoftBody;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Contacts of a tick, summed by pair of objects.
@@ -28,6 +30,10 @@ struct ContactSum<D: Dim> {
     contact: Contact<D>,
     /// Largest normal impulse among the added contact points [N s].
     largest: f32,
+    /// Sum of the impulses on the first object [N s].
+    linear: DVec3,
+    /// Sum of the moments of these impulses about the origin [N m s].
+    angular: DVec3,
 }
 
 impl<D: Dim> Default for ContactSums<D> {
@@ -41,15 +47,16 @@ impl<D: Dim> Default for ContactSums<D> {
 }
 
 impl<D: Dim> ContactSums<D> {
-    /// Adds the normal impulse [N s] of a contact point to the sum of its pair, and keeps the highest
-    /// approach speed [m/s]. `point_and_normal` returns the position [m] of the point, and the normal from
-    /// the second object towards the first. It is called only if `impulse` is the largest of the pair so far.
+    /// Adds a contact point at the position `at` [m] to the sum of its pair: the normal impulse [N s] and the
+    /// whole impulse `sum` on the first object [N s]. Keeps the highest approach speed [m/s]. `normal` returns
+    /// the normal from the second object towards the first. It is called only if `impulse` is the largest of
+    /// the pair so far.
     fn add(
         &mut self,
         objects: [ObjectRef; 2],
-        impulse: f32,
-        speed: f32,
-        point_and_normal: impl FnOnce() -> [Vec3; 2],
+        (impulse, sum, speed): (f32, Vec3, f32),
+        at: Vec3,
+        normal: impl FnOnce() -> Vec3,
     ) {
         let [first, second] = objects;
         let pair = [first.min(second), first.max(second)];
@@ -63,31 +70,67 @@ impl<D: Dim> ContactSums<D> {
                         normal: D::Vector::ZERO,
                         speed: 0.0,
                         impulse: 0.0,
+                        force: D::Vector::ZERO,
+                        torque: D::Angular::default(),
                     },
                     largest: 0.0,
+                    linear: DVec3::ZERO,
+                    angular: DVec3::ZERO,
                 });
                 self.list.len() - 1
             }),
         };
         self.last = Some((pair, place));
-        let ContactSum { contact, largest } = &mut self.list[place];
+        let own = &mut self.list[place];
+        let contact = &mut own.contact;
+        let sign = if first > second { -1.0 } else { 1.0 };
+        let sum = (sum * sign).as_dvec3();
+        own.linear += sum;
+        own.angular += at.as_dvec3().cross(sum);
         contact.impulse += impulse;
         contact.speed = contact.speed.max(speed);
-        if impulse > *largest {
-            *largest = impulse;
-            let [point, normal] = point_and_normal();
-            let is_turned = first > second;
-            contact.point = D::Vector::from_vec3(point);
-            let normal = if is_turned { -normal } else { normal };
-            contact.normal = D::Vector::from_vec3(normal);
+        if impulse > own.largest {
+            own.largest = impulse;
+            contact.point = D::Vector::from_vec3(at);
+            contact.normal = D::Vector::from_vec3(normal() * sign);
         }
     }
 
-    /// Returns all contacts, ascending by pair of objects.
-    fn contacts(self) -> Vec<Contact<D>> {
+    /// Returns all contacts of a tick of `duration` [s], ascending by pair of objects.
+    fn contacts(self, duration: f32) -> Vec<Contact<D>> {
         let places = self.places.into_values();
-        places.map(|place| self.list[place].contact).collect()
+        let contacts = places.map(|place| {
+            let own = &self.list[place];
+            let (share, mut contact) = (1.0 / f64::from(duration), own.contact);
+            let point = contact.point.to_vec3().as_dvec3();
+            let torque = own.angular - point.cross(own.linear);
+            contact.force = D::Vector::from_vec3((own.linear * share).as_vec3());
+            contact.torque = D::Angular::from_vec3((torque * share).as_vec3());
+            contact
+        });
+        contacts.collect()
     }
+}
+
+/// Mean force of a contact while its objects settle: all objects that can move have been slow for some time.
+/// It becomes the force of the contact when they fall asleep, because the force in a single tick contains the
+/// rest of their vibration.
+#[derive(Copy, Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
+pub(super) struct SettlingContact<D: Dim> {
+    pub(super) pair: [ObjectRef; 2],
+    /// Mean force on the first object.
+    mean: ReactionForce<D>,
+    /// Number of ticks in the mean.
+    ticks: u32,
+}
+
+hash_state! { [D: Dim] struct SettlingContact<D> { pair, mean, ticks } }
+
+/// Returns the normal impulse [N s], the whole impulse [N s] and the approach speed [m/s] of a pair in a tick.
+fn parts_of(impulse: &Impulse) -> (f32, Vec3, f32) {
+    (impulse.total, impulse.sum.xyz(), impulse.speed)
 }
 
 impl<D: Dim> World<D> {
@@ -142,9 +185,10 @@ impl<D: Dim> World<D> {
 
     /// Reports the contact and sensor events of the tick.
     pub(super) fn report_contacts(&mut self) {
-        let contacts = self.contacts_in_tick();
+        let mut contacts = self.contacts_in_tick();
         self.events
             .extend(contacts.iter().copied().map(Event::ContactForce));
+        self.settle_contacts(&mut contacts);
         self.report_contact_changes(contacts);
         self.report_sensors();
     }
@@ -162,9 +206,9 @@ impl<D: Dim> World<D> {
                 ObjectRef::Piece { body: id, piece },
                 ObjectRef::RigidBody(rigid),
             ];
-            sums.add(objects, pair.impulse.total, pair.impulse.speed, || {
-                let point = body.positions()[pair.node].xyz();
-                [point, self.rigids[rigid].shape().distance(point).1]
+            let at = body.positions()[pair.node].xyz();
+            sums.add(objects, parts_of(&pair.impulse), at, || {
+                self.rigids[rigid].shape().distance(at).1
             });
         }
         let spheres = &self.nearby.spheres;
@@ -174,19 +218,59 @@ impl<D: Dim> World<D> {
                 body: self.bodies.id(sphere.body),
                 piece: sphere.piece,
             });
-            sums.add(objects, pair.impulse.total, pair.impulse.speed, || {
-                let [point, other] = pair.spheres.map(|sphere| spheres.centres[sphere].xyz());
-                let apart = point - other;
-                [point, apart * (1.0 / apart.length().max(1e-9))]
+            let [at, other] = pair.spheres.map(|sphere| spheres.centres[sphere].xyz());
+            sums.add(objects, parts_of(&pair.impulse), at, || {
+                let apart = at - other;
+                apart * (1.0 / apart.length().max(1e-9))
             });
         }
         for point in &self.nearby.rigids.pressed {
             let objects = { point.both }.map(|slot| ObjectRef::RigidBody(self.rigids.id(slot)));
-            sums.add(objects, point.impulse, point.speed, || {
-                [point.at, point.normal]
-            });
+            let parts = (point.impulse, point.sum, point.speed);
+            sums.add(objects, parts, point.at, || point.normal);
         }
-        sums.contacts()
+        sums.contacts(self.config.tick)
+    }
+
+    /// Updates the mean forces of contacts between objects that settle. Contacts between objects that fell
+    /// asleep in this tick get their mean force.
+    fn settle_contacts(&mut self, contacts: &mut [Contact<D>]) {
+        let before = std::mem::take(&mut self.settling);
+        for contact in contacts {
+            let pair = contact.pair;
+            if !pair.iter().all(|&object| self.settles(object)) {
+                continue;
+            }
+            let now = ReactionForce {
+                point: contact.point,
+                force: contact.force,
+                torque: contact.torque,
+            };
+            let known = before.binary_search_by_key(&pair, |settling| settling.pair);
+            let (mean, ticks) = match known {
+                Ok(place) => {
+                    let ticks = before[place].ticks.saturating_add(1);
+                    (before[place].mean.mean_with(now, ticks), ticks)
+                }
+                Err(_) => (now, 1),
+            };
+            if self.rest(pair) {
+                (contact.force, contact.torque) = (mean.force, mean.torque);
+            } else {
+                self.settling.push(SettlingContact { pair, mean, ticks });
+            }
+        }
+    }
+
+    /// Returns whether an object rests, or has been slow since an earlier tick.
+    fn settles(&self, object: ObjectRef) -> bool {
+        self.rests(object)
+            || match object {
+                ObjectRef::RigidBody(id) => self.rigids[id].sleep_timer > 0.0,
+                ObjectRef::Piece { body, piece } => {
+                    self.bodies[body].pieces().list[piece].sleep_timer > 0.0
+                }
+            }
     }
 
     /// Compares the contacts of this tick, in ascending order, with those of the previous tick, and reports
@@ -221,7 +305,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns whether an object exists.
-    fn exists(&self, object: ObjectRef) -> bool {
+    pub(super) fn exists(&self, object: ObjectRef) -> bool {
         match object {
             ObjectRef::RigidBody(rigid) => self.rigids.get(rigid).is_ok(),
             ObjectRef::Piece { body, piece } => self

@@ -18,14 +18,20 @@ use std::ops::Index;
 
 impl<D: Dim> World<D> {
     /// Adds a soft body. A body that is too stiff for the maximum number of substeps is softened, see
-    /// [`SoftBody::stiffness_scale`].
+    /// [`SoftBody::stiffness_scale`]. A body inside another object is pushed out of it, see
+    /// [`Event::Overlapped`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] if a node is not finite or out of the [range](SoftBody::range) of the body.
     #[inline(never)]
-    pub fn add_soft_body(&mut self, mut body: SoftBody<D>) -> SoftBodyHandle {
+    pub fn add_soft_body(&mut self, mut body: SoftBody<D>) -> Result<SoftBodyHandle, Error> {
+        body.check_range(|at| at)?;
         body.scale_stiffness_for(self.config.shortest_substep());
         let id = self.bodies.insert(body);
         // The body may have fallen asleep in another world.
         self.wake_body(id);
-        id
+        self.overlaps.place(id.into());
+        Ok(id)
     }
 
     /// Returns the Rayleigh damping that acts in a soft body, for each of its materials: that of the material,
@@ -51,7 +57,9 @@ impl<D: Dim> World<D> {
     pub fn add_rigid_body(&mut self, body: RigidBody<D>) -> Result<RigidBodyHandle, Error> {
         let rigid = RigidState::from(&body);
         rigid.check()?;
-        Ok(self.rigids.insert(rigid))
+        let id = self.rigids.insert(rigid);
+        self.overlaps.place(id.into());
+        Ok(id)
     }
 
     /// Sets the target position [m] of a kinematic or coupled rigid body. The target moves there at a
@@ -119,12 +127,13 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.
     #[inline(never)]
-    pub fn soft_body_mut(&mut self, body: SoftBodyHandle) -> Result<&mut SoftBody<D>, Error> {
-        self.bodies.get(body)?;
-        self.wake_body(body);
-        let body = self.bodies.get_mut(body)?;
+    pub fn soft_body_mut(&mut self, id: SoftBodyHandle) -> Result<&mut SoftBody<D>, Error> {
+        self.bodies.get(id)?;
+        self.wake_body(id);
+        let body = self.bodies.get_mut(id)?;
         // The caller's changes are not recorded, so the history restarts and bookmarks become invalid.
         body.forget_history();
+        self.overlaps.place(id.into());
         Ok(body)
     }
 

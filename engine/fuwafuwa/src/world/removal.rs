@@ -46,7 +46,7 @@ impl<D: Dim> World<D> {
     ///
     /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
     /// let cake = SoftBody::new(VoxelGrid::cube(16, 1.0)?, &[Material::default()])?;
-    /// let cake = world.add_soft_body(cake);
+    /// let cake = world.add_soft_body(cake)?;
     /// let across = Blade::segment(Vec2::new(0.3, -1.0), Vec2::new(0.3, 2.0));
     /// world.cut(cake, &across)?;
     /// assert_eq!(world[cake].pieces().count(), 2);
@@ -77,7 +77,7 @@ impl<D: Dim> World<D> {
     ///
     /// let mut world = World::<Dim3>::new(WorldConfig::default())?;
     /// let ball = SoftBody::new(VoxelGrid::ball(8, 0.4)?, &[Material::default()])?;
-    /// let ball = world.add_soft_body(ball);
+    /// let ball = world.add_soft_body(ball)?;
     /// world.soft_body_mut(ball)?.crumble();
     /// assert_eq!(world.remove_small_pieces(PieceSize::Voxels(1))?.pieces, []);
     /// let removed = world.remove_small_pieces(PieceSize::Voxels(2))?;

@@ -1,6 +1,8 @@
 //! Fields of a [`World`] in a snapshot, and the checks after reading them.
 
-use super::{Nearby, World, WorldConfig};
+use super::contact_events::SettlingContact;
+use super::grips::{GripState, Grips};
+use super::{Nearby, Overlaps, World, WorldConfig};
 use crate::contact::joint::{JointState, Joints};
 use crate::contact::solver::Contacts;
 use crate::error::Error;
@@ -26,11 +28,14 @@ pub(crate) struct StoredWorld<D: Dim> {
     rigids: RigidBodies,
     joints: Joints,
     knives: Knives,
+    grips: Grips,
     ticks: u64,
     nearby: Nearby,
     events: Vec<Event<D>>,
     touching: Vec<Contact<D>>,
+    settling: Vec<SettlingContact<D>>,
     inside: Vec<(RigidBodyHandle, ObjectRef)>,
+    overlaps: Overlaps,
 }
 
 impl<D: Dim> TryFrom<StoredWorld<D>> for World<D> {
@@ -48,11 +53,14 @@ impl<D: Dim> TryFrom<StoredWorld<D>> for World<D> {
             rigids: stored.rigids,
             joints: stored.joints,
             knives: stored.knives,
+            grips: stored.grips,
             ticks: stored.ticks,
             nearby: stored.nearby,
             events: stored.events,
             touching: stored.touching,
+            settling: stored.settling,
             inside: stored.inside,
+            overlaps: stored.overlaps,
             contacts: Contacts::default(),
             query_cache: QueryCache::default(),
             slowed: Default::default(),
@@ -61,8 +69,12 @@ impl<D: Dim> TryFrom<StoredWorld<D>> for World<D> {
         world.nearby.keep_known(&world.bodies, &world.rigids);
         world.touching.sort_by_key(|contact| contact.pair);
         world.touching.dedup_by_key(|contact| contact.pair);
+        world.settling.sort_by_key(|settling| settling.pair);
+        world.settling.dedup_by_key(|settling| settling.pair);
         world.inside.sort_unstable();
         world.inside.dedup();
+        world.overlaps.pairs.sort_unstable();
+        world.overlaps.pairs.dedup();
         Ok(world)
     }
 }
@@ -85,6 +97,10 @@ impl<D: Dim> StoredWorld<D> {
             (
                 "a knife in it is invalid",
                 self.knives.iter().all(KnifeState::is_sound::<D>),
+            ),
+            (
+                "a grip in it is invalid",
+                self.grips.iter().all(GripState::is_sound::<D>),
             ),
             (
                 "its tick counter is above the limit",

@@ -7,7 +7,7 @@ fn replaced_body_may_have_fewer_nodes_and_pieces() {
     let mut world = world::<Dim2>();
     let mut dust = ball(16);
     dust.crumble();
-    let id = world.add_soft_body(dust);
+    let id = world.add_soft_body(dust).unwrap();
     step(&mut world, 20);
     *world.soft_body_mut(id).unwrap() = ball(8);
     step(&mut world, 5);
@@ -22,7 +22,9 @@ fn sleeper() -> World<Dim2> {
         ..Material::default()
     };
     let grid = VoxelGrid::ball(16, 1.0).unwrap();
-    let id = world.add_soft_body(SoftBody::new(grid, &[damped]).unwrap());
+    let id = world
+        .add_soft_body(SoftBody::new(grid, &[damped]).unwrap())
+        .unwrap();
     for _ in 0..900 {
         world.step();
         if world[id].piece_views()[0].asleep {
@@ -79,7 +81,9 @@ fn sleeping_body_wakes_when_added_elsewhere() {
     let mut world = sleeper();
     let id = world.nth_soft_body(0).unwrap();
     let body = world.remove(id).unwrap();
-    let id = world.add_soft_body(body.translated(Vec2::new(0.0, 3.0)));
+    let id = world
+        .add_soft_body(body.translated(Vec2::new(0.0, 3.0)))
+        .unwrap();
     step(&mut world, 30);
     let view = world[id].piece_views()[0];
     assert!(!view.asleep && view.low.y < 2.5, "{view:?}");
@@ -103,12 +107,12 @@ fn stiffness_scale_follows_substeps_of_world() {
     };
     let (mut poor, mut rich) = (world_of(16), world_of(1024));
     let body = SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), &[stiff]).unwrap();
-    let id = poor.add_soft_body(body);
+    let id = poor.add_soft_body(body).unwrap();
     let stiffness_scale = poor[id].stiffness_scale();
     assert!(stiffness_scale < 0.2);
-    let id = rich.add_soft_body(poor.remove(id).unwrap());
+    let id = rich.add_soft_body(poor.remove(id).unwrap()).unwrap();
     assert_eq!(rich[id].stiffness_scale(), 1.0);
-    let id = poor.add_soft_body(rich.remove(id).unwrap());
+    let id = poor.add_soft_body(rich.remove(id).unwrap()).unwrap();
     assert_eq!(poor[id].stiffness_scale(), stiffness_scale);
 }
 
@@ -119,7 +123,7 @@ fn removal_keeps_other_handles_valid() {
     for place in 0..3u8 {
         let x = 2.0 * f32::from(place);
         let body = ball(8 + 4 * usize::from(place)).translated(Vec2::new(x, 0.0));
-        bodies.push(world.add_soft_body(body));
+        bodies.push(world.add_soft_body(body).unwrap());
         let hand = RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(x + 0.5, 1.1));
         let hand = world.add_rigid_body(hand).unwrap();
         world
@@ -151,7 +155,7 @@ fn removal_keeps_other_handles_valid() {
 #[test]
 fn stale_handle_is_rejected() {
     let mut world = world::<Dim2>();
-    let ball = world.add_soft_body(ball(8));
+    let ball = world.add_soft_body(ball(8)).unwrap();
     let hand = world
         .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(3.0, 1.0)))
         .unwrap();
@@ -162,7 +166,7 @@ fn stale_handle_is_rejected() {
     );
     let body = world.remove(ball).unwrap();
     world.remove(hand).unwrap();
-    let heir = world.add_soft_body(body);
+    let heir = world.add_soft_body(body).unwrap();
     world
         .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(3.0, 1.0)))
         .unwrap();
@@ -196,7 +200,7 @@ fn removal_wakes_only_bodies_in_contact() {
         body.translated(at)
     };
     let places = [(0.0, 0.0), (0.0, 0.101), (0.0, 0.202), (2.0, 0.0)];
-    let ids = places.map(|at| world.add_soft_body(cube(at.into())));
+    let ids = places.map(|at| world.add_soft_body(cube(at.into())).unwrap());
     let sleeps = |world: &World<Dim2>, n: usize| world[ids[n]].piece_views()[0].asleep;
     for _ in 0..1200 {
         world.step();
@@ -224,7 +228,7 @@ fn coupled_box_and_capsule_push_and_stop_at_floor() {
         Shape::capsule(Vec2::new(-0.4, 0.0), Vec2::new(0.4, 0.0), 0.1),
     ] {
         let mut world = world::<Dim2>();
-        let id = world.add_soft_body(ball(12));
+        let id = world.add_soft_body(ball(12)).unwrap();
         let plate = RigidBody::coupled(shape).at(Vec2::new(0.5, 1.2));
         let plate = world.add_rigid_body(plate).unwrap();
         for tick in 0..60u8 {
@@ -263,7 +267,7 @@ fn fixed_node_falls_when_freed() {
     let mut body = ball::<Dim2>(8);
     let nodes: Vec<_> = body.mesh().nodes().map(|(id, _)| id).collect();
     nodes.iter().for_each(|&id| body.fix_node(id));
-    let soft = world.add_soft_body(body);
+    let soft = world.add_soft_body(body).unwrap();
     let height = |world: &World<Dim2>| world[soft].piece_views()[0].centre.y;
     let start = height(&world);
     step(&mut world, 120);
@@ -277,7 +281,7 @@ fn fixed_node_falls_when_freed() {
 #[test]
 fn replaced_body_has_no_contacts_with_itself() {
     let mut world = world::<Dim2>();
-    let id = world.add_soft_body(bar([2, 7]));
+    let id = world.add_soft_body(bar([2, 7])).unwrap();
     world.step();
     *world.soft_body_mut(id).unwrap() = bar([2, 8]).with_velocity(Vec2::new(0.0, -4.0));
     let mut touches = 0;
@@ -304,6 +308,8 @@ fn small_voxels_collide_after_large_ones_are_added() {
     world.step();
     let grid = VoxelGrid::from_fn([2, 2, 1], 1.0, |_| 1).unwrap();
     let large = SoftBody::new(grid, &[Material::default()]).unwrap();
-    world.add_soft_body(large.translated(Vec2::new(0.0, -9.0)));
+    world
+        .add_soft_body(large.translated(Vec2::new(0.0, -9.0)))
+        .unwrap();
     assert_they_meet(world);
 }

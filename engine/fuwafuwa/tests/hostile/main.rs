@@ -68,9 +68,13 @@ fn about_to_meet() -> World<Dim2> {
         ..WorldConfig::default()
     };
     let mut world = World::new(settings).unwrap();
-    world.add_soft_body(bar([6, 6]).with_velocity(Vec2::X));
+    world
+        .add_soft_body(bar([6, 6]).with_velocity(Vec2::X))
+        .unwrap();
     let other = bar([6, 6]).translated(Vec2::new(0.4, 0.0));
-    world.add_soft_body(other.with_velocity(Vec2::NEG_X));
+    world
+        .add_soft_body(other.with_velocity(Vec2::NEG_X))
+        .unwrap();
     world
 }
 
@@ -96,7 +100,7 @@ fn check_coarse<D: Dim>(blade: Blade<D>) {
         Grading::Coarse,
     );
     let mut world = world::<D>();
-    let id = world.add_soft_body(coarse.unwrap());
+    let id = world.add_soft_body(coarse.unwrap()).unwrap();
     let above = |height: f32| D::Vector::from_vec3(Vec3::new(0.5, height, 0.5));
     let hand = RigidBody::kinematic(Shape::ball(0.1)).at(above(1.2));
     let hand = world.add_rigid_body(hand).unwrap();
@@ -187,7 +191,7 @@ fn hash_of_tilted(shape: Shape<Dim2>, tilt: Rotation) -> u64 {
     let below = RigidBody::fixed(shape).with_friction(0.5);
     world.add_rigid_body(below.rotated(tilt)).unwrap();
     let body = ball(12).translated(Vec2::new(0.0, 0.02));
-    let id = world.add_soft_body(body.rotated(tilt));
+    let id = world.add_soft_body(body.rotated(tilt)).unwrap();
     let hand = RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(0.5, 0.9));
     let hand = world.add_rigid_body(hand.rotated(tilt)).unwrap();
     for _ in 0..30 {
@@ -246,7 +250,8 @@ fn unused_material_has_no_effect() {
     let states_with = |materials: &[Material]| {
         let mut world = world::<Dim2>();
         let id = world
-            .add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap());
+            .add_soft_body(SoftBody::new(VoxelGrid::ball(16, 1.0).unwrap(), materials).unwrap())
+            .unwrap();
         assert_eq!(world[id].stiffness_scale(), 1.0);
         let hand = RigidBody::kinematic(Shape::ball(0.1)).at(Vec2::new(0.5, 1.1));
         let hand = world.add_rigid_body(hand).unwrap();
@@ -267,7 +272,9 @@ fn unused_material_has_no_effect() {
 #[test]
 fn cut_reports_positions_of_released_nodes() {
     let mut world = world::<Dim2>();
-    let id = world.add_soft_body(ball(16).translated(Vec2::new(3.0, 0.0)));
+    let id = world
+        .add_soft_body(ball(16).translated(Vec2::new(3.0, 0.0)))
+        .unwrap();
     let blade = Blade::segment(Vec2::new(3.5, -0.1), Vec2::new(3.5, 1.1));
     let count = world.cut(id, &blade).unwrap();
     let mut places = 0;

@@ -7,12 +7,16 @@ use super::*;
 fn non_finite_body_is_quarantined() {
     for nowhere in [f32::NAN, f32::INFINITY] {
         let mut world = world::<Dim2>();
-        world.add_soft_body(ball(12).translated(Vec2::new(nowhere, 0.0)));
-        world.add_soft_body(
-            ball(12)
-                .translated(Vec2::new(3.0, 0.0))
-                .with_velocity(Vec2::new(0.0, nowhere)),
-        );
+        world
+            .add_soft_body(ball(12).with_velocity(Vec2::new(nowhere, 0.0)))
+            .unwrap();
+        world
+            .add_soft_body(
+                ball(12)
+                    .translated(Vec2::new(3.0, 0.0))
+                    .with_velocity(Vec2::new(0.0, nowhere)),
+            )
+            .unwrap();
         let report = world.step();
         assert_eq!(report.quarantined, 2);
         assert_finite(&world);
@@ -33,7 +37,9 @@ fn non_finite_body_is_quarantined() {
 #[test]
 fn quarantine_restores_positions_of_torn_piece() {
     let mut world = world::<Dim2>();
-    let id = world.add_soft_body(ball(24).translated(Vec2::new(5.0, 0.0)));
+    let id = world
+        .add_soft_body(ball(24).translated(Vec2::new(5.0, 0.0)))
+        .unwrap();
     let hand = RigidBody::kinematic(Shape::ball(0.08)).at(Vec2::new(5.5, 1.1));
     let hand = world.add_rigid_body(hand).unwrap();
     let mut both = 0;
@@ -66,7 +72,9 @@ fn quarantine_restores_positions_of_torn_piece() {
 fn quarantine_leaves_neighbours_unaffected() {
     let mut world = world::<Dim2>();
     for (place, x) in [0.0, 0.97].into_iter().enumerate() {
-        world.add_soft_body(ball(16).translated(Vec2::new(x, 0.0)));
+        world
+            .add_soft_body(ball(16).translated(Vec2::new(x, 0.0)))
+            .unwrap();
         let hand = RigidBody::coupled(Shape::ball(0.1)).at(Vec2::new(x + 0.5, 0.95));
         let motion_type = [MotionType::Kinematic, MotionType::default()][place];
         world
@@ -91,7 +99,9 @@ fn quarantine_leaves_neighbours_unaffected() {
 #[test]
 fn piece_detached_from_quarantined_one_is_quarantined() {
     let mut world = world::<Dim2>();
-    let id = world.add_soft_body(ball(12).with_velocity(Vec2::new(f32::NAN, 0.0)));
+    let id = world
+        .add_soft_body(ball(12).with_velocity(Vec2::new(f32::NAN, 0.0)))
+        .unwrap();
     world.step();
     let blade = Blade::segment(Vec2::new(0.5, -1.0), Vec2::new(0.5, 2.0));
     world.cut(id, &blade).unwrap();
@@ -103,8 +113,12 @@ fn piece_detached_from_quarantined_one_is_quarantined() {
 #[test]
 fn quarantined_body_supports_others() {
     let mut world = World::new(WorldConfig::default()).unwrap();
-    world.add_soft_body(bar([24, 4]).translated(Vec2::new(f32::INFINITY, 0.0)));
-    let upper = world.add_soft_body(bar([6, 6]).translated(Vec2::new(0.27, 0.25)));
+    world
+        .add_soft_body(bar([24, 4]).with_velocity(Vec2::new(f32::INFINITY, 0.0)))
+        .unwrap();
+    let upper = world
+        .add_soft_body(bar([6, 6]).translated(Vec2::new(0.27, 0.25)))
+        .unwrap();
     step(&mut world, 30);
     let view = world[upper].piece_views()[0];
     assert!(
@@ -117,7 +131,10 @@ fn quarantined_body_supports_others() {
 fn bodies_collide_after_quarantine_of_another() {
     for nowhere in [f32::NAN, f32::INFINITY] {
         let mut world = about_to_meet();
-        world.add_soft_body(bar([2, 2]).translated(Vec2::new(nowhere, -3.0)));
+        let lost = bar([2, 2]).translated(Vec2::new(0.0, -3.0));
+        world
+            .add_soft_body(lost.with_velocity(Vec2::new(nowhere, 0.0)))
+            .unwrap();
         assert_eq!(world.step().quarantined, 1);
         assert_they_meet(world);
     }

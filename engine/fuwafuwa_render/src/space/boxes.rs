@@ -158,7 +158,9 @@ mod tests {
     fn small_view_matches_element_view() {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::<Dim3>::ball(12, 1.0).unwrap();
-        let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let soft = world
+            .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+            .unwrap();
         let hand = RigidBody::coupled(Shape::ball(0.3)).at(Vec3::new(0.5, 1.3, 0.5));
         let hand = world.add_rigid_body(hand).unwrap();
         let floor = Shape::half_space(Vec3::Y, Vec3::ZERO);
@@ -186,7 +188,9 @@ mod tests {
     fn boxes_fill_the_uncut_part_in_any_orientation() {
         let grid = VoxelGrid::<Dim3>::cube(8, 1.0).unwrap();
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
-        let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let soft = world
+            .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+            .unwrap();
         let volume = |world: &World<Dim3>, share: f32| {
             let direction = Vec3::new(0.6, 0.0, 0.8);
             let (palette, cut) = (Palette::candy(), Some(Cut { direction, share }));

@@ -231,10 +231,14 @@ mod tests {
             world.add_rigid_body(body).unwrap();
         }
         let grid = VoxelGrid::from_fn([5, 2, 2], 0.5, |[x, ..]| u8::from(x != 2)).unwrap();
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        world
+            .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+            .unwrap();
         let grid = VoxelGrid::from_fn([1, 1, 1], 0.5, |_| 1).unwrap();
         let crumb = SoftBody::new(grid, &[Material::default()]).unwrap();
-        world.add_soft_body(crumb.translated(2.0 * Vec3::Y));
+        world
+            .add_soft_body(crumb.translated(2.0 * Vec3::Y))
+            .unwrap();
         let palette = Palette::candy();
         let mut frame = Frame::new(Camera::fit(Vec3::NEG_ONE, Vec3::ONE, [1, 1]), &palette);
         let mut geometry = Geometry::default();

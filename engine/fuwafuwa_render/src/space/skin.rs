@@ -224,7 +224,9 @@ mod tests {
     fn ball(n: usize) -> World<Dim3> {
         let mut world = World::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(n, 1.0).unwrap();
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        world
+            .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+            .unwrap();
         world
     }
 
@@ -354,7 +356,9 @@ mod tests {
     fn isolated_voxel_is_a_crumb() {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::from_fn([3, 1, 1], 1.0, |[x, ..]| u8::from(x != 1)).unwrap();
-        world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        world
+            .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+            .unwrap();
         let skin = skin(&world);
         assert_eq!((skin.crumbs().len(), skin.indices().len()), (2, 0));
     }

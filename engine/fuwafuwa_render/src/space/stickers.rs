@@ -195,7 +195,9 @@ mod tests {
     fn sticker_lies_on_the_skin_and_on_torn_faces() {
         let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
         let grid = VoxelGrid::ball(32, 1.0).unwrap();
-        let soft = world.add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap());
+        let soft = world
+            .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+            .unwrap();
         let outline = [[-0.6, -0.6], [0.6, -0.6], [0.6, 0.6], [-0.6, 0.6]].to_vec();
         let mark = Mark {
             outline,

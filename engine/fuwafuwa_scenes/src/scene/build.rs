@@ -75,8 +75,9 @@ impl BodyText {
         materials: &SceneMaterials,
         budget: &mut Budget,
     ) -> Result<(), FieldError> {
-        let body = world.add_soft_body(self.build(materials, budget)?);
         let wrong = |field: &'static str| move |error: Error| FieldError::engine(field, error);
+        let body = world.add_soft_body(self.build(materials, budget)?);
+        let body = body.map_err(wrong("at"))?;
         if let Some(scale) = self.gravity_scale {
             let set = world.set_gravity_scale(body, scale);
             set.map_err(wrong("gravity_scale"))?;

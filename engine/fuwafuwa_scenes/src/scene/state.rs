@@ -8,7 +8,7 @@ use fuwafuwa::{Dim, RigidBodyHandle, RigidBodyRef, SoftBody, World, WorldConfig,
 /// Encodes a soft body.
 pub(super) fn of_body<D: Dim>(body: &SoftBody<D>, settings: WorldConfig<D>) -> Option<String> {
     let mut world = World::new(settings).ok()?;
-    world.add_soft_body(body.clone());
+    world.add_soft_body(body.clone()).ok()?;
     Some(BASE64.encode(snapshot::save(&world)))
 }
 

@@ -125,7 +125,7 @@ fn body_text<D: Dim>(
 ) -> Result<BodyText, FieldError> {
     let of_world = |body: SoftBody<D>| {
         let mut world = World::new(settings).ok()?;
-        world.add_soft_body(body);
+        world.add_soft_body(body).ok()?;
         Some(snapshot::save(&world))
     };
     let words = by_fields(body).filter(|(_, made)| {
@@ -195,7 +195,7 @@ fn by_fields<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
 /// Returns `made` with the gravity scale, layers and user data of `body`.
 fn with_properties_of<D: Dim>(made: SoftBody<D>, body: &SoftBody<D>) -> Option<SoftBody<D>> {
     let mut world = World::new(WorldConfig::default()).ok()?;
-    let id = world.add_soft_body(made);
+    let id = world.add_soft_body(made).ok()?;
     world.set_gravity_scale(id, body.gravity_scale()).ok()?;
     world.set_layers(id, body.layers()).ok()?;
     world.set_user_data(id, body.user_data()).ok()?;

@@ -371,7 +371,7 @@ mod tests {
     fn alone<D: Dim>(grid: VoxelGrid<D>) -> (World<D>, SoftBodyHandle) {
         let mut world = World::new(WorldConfig::default()).expect("the defaults are valid");
         let body = SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid");
-        let body = world.add_soft_body(body);
+        let body = world.add_soft_body(body).unwrap();
         (world, body)
     }
 

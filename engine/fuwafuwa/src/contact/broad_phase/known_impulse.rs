@@ -17,14 +17,23 @@ pub struct Impulse {
     /// Sum of the normal impulses since the start of the tick [N s].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub total: f32,
+    /// Sum of the normal and friction impulses on the first side since the start of the tick, without the part
+    /// that only resolved overlaps [N s].
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub sum: Row,
     /// Highest approach speed since the start of the tick [m/s].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub speed: f32,
 }
 
-hash_state! { struct Impulse { normal_impulse, friction_impulse } skip { total, speed } }
+hash_state! { struct Impulse { normal_impulse, friction_impulse } skip { total, sum, speed } }
 
 impl Impulse {
+    /// Clears the sums, at the start of a tick.
+    pub fn start_tick(&mut self) {
+        (self.total, self.sum, self.speed) = (0.0, Row::ZERO, 0.0);
+    }
+
     /// Returns whether the contact had an impulse in the last substep.
     pub fn is_known(&self) -> bool {
         self.normal_impulse != 0.0 || self.friction_impulse != Row::ZERO

@@ -107,7 +107,7 @@ impl NodePairs {
     /// Starts a tick: clears the impulse sums of the last tick and requests a full search.
     pub fn start_tick(&mut self) {
         for pair in &mut self.list {
-            (pair.impulse.total, pair.impulse.speed) = (0.0, 0.0);
+            pair.impulse.start_tick();
         }
         self.leeways.clear();
         self.changed.clear();

@@ -31,6 +31,8 @@ pub struct PressedContact {
     pub both: [RigidSlot; 2],
     /// Normal impulse [N s].
     pub impulse: f32,
+    /// Normal and friction impulse on the first body, without the part that only resolved overlaps [N s].
+    pub sum: Vec3,
     /// Approach speed [m/s].
     pub speed: f32,
     /// Position [m].

@@ -157,6 +157,7 @@ mod tests {
                 normal_impulse,
                 friction_impulse: Row::from_array([normal_impulse; 4]),
                 total: 0.0,
+                sum: Row::ZERO,
                 speed: 0.0,
             },
             met_in_front: true,

@@ -155,7 +155,7 @@ impl SpherePairs {
         }
         self.is_new_tick = true;
         for pair in &mut self.list {
-            (pair.impulse.total, pair.impulse.speed) = (0.0, 0.0);
+            pair.impulse.start_tick();
         }
     }
 

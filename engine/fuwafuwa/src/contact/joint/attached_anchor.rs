@@ -8,6 +8,7 @@ use crate::foundation::dim::{Dim, Point, voxel_around};
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
 use crate::math::row::Row;
+use crate::object_ref::ObjectRef;
 #[cfg(feature = "serde")]
 use crate::rigid_body::FARTHEST;
 use crate::rigid_body::RigidBodies;
@@ -71,6 +72,21 @@ impl AttachedAnchor {
     /// Returns whether the anchor is on nodes of a soft body.
     pub fn is_soft(&self) -> bool {
         matches!(self, Self::Soft(..))
+    }
+
+    /// Returns the object that the anchor is attached to; `None` for a point of the world. For nodes of several
+    /// pieces, the piece of the first node.
+    pub fn object<D: Dim>(&self, bodies: &SoftBodies<D>) -> Option<ObjectRef> {
+        match self {
+            Self::Position(_) => None,
+            Self::RigidBody(id, _) => Some(ObjectRef::RigidBody(*id)),
+            Self::Soft(id, corners) => {
+                let body = bodies.get(*id).ok()?;
+                let node = nodes(body, corners).next()?;
+                let piece = body.pieces().of_node(node);
+                Some(ObjectRef::Piece { body: *id, piece })
+            }
+        }
     }
 
     /// Moves an anchor on a rigid body or in the world to a world-space point [m]. Does nothing to an anchor
@@ -208,21 +224,32 @@ fn nodes<'a, D: Dim>(
     body: &'a SoftBody<D>,
     corners: &'a [(Point, Point)],
 ) -> impl Iterator<Item = NodeId> + 'a {
-    corners.iter().filter_map(|&(voxel, point)| {
-        let mesh = body.mesh();
-        let element = mesh.element_at(voxel)?;
-        let apart = |node: NodeId| {
-            let at = mesh.node(node).at;
-            // Subtracts in 64 bits to avoid overflow, because a file may contain any lattice point.
-            let along = |axis: usize| i64::from(at[axis]) - i64::from(point[axis]);
-            (0..D::N).map(|axis| along(axis).abs()).sum::<i64>()
-        };
-        element
-            .nodes
-            .iter()
-            .copied()
-            .min_by_key(|&node| (apart(node), node))
-    })
+    corners.iter().filter_map(|&corner| node_at(body, corner))
+}
+
+/// Returns the node at the corner of a voxel, given by the voxel and the lattice point of the corner: of all
+/// nodes of the voxel's element, the node nearest to the lattice point. `None` if the voxel was removed.
+pub(crate) fn node_at<D: Dim>(
+    body: &SoftBody<D>,
+    (voxel, point): (Point, Point),
+) -> Option<NodeId> {
+    let mesh = body.mesh();
+    let element = mesh.element_at(voxel)?;
+    let apart = |node: NodeId| {
+        let at = mesh.node(node).at;
+        // Subtracts in 64 bits to avoid overflow, because a file may contain any lattice point.
+        let along = |axis: usize| i64::from(at[axis]) - i64::from(point[axis]);
+        (0..D::N).map(|axis| along(axis).abs()).sum::<i64>()
+    };
+    let nodes = element.nodes.iter().copied();
+    nodes.min_by_key(|&node| (apart(node), node))
+}
+
+/// Returns the corner of a voxel at which a node is.
+pub(crate) fn corner_of<D: Dim>(body: &SoftBody<D>, node: NodeId) -> (Point, Point) {
+    let own = body.mesh().node(node);
+    let octant = own.group.trailing_zeros() as usize;
+    (voxel_around::<D>(own.at, octant), own.at)
 }
 
 /// Returns the voxel corners of a body with a node within `radius` [m] of a point, or the corner with the
@@ -239,10 +266,5 @@ fn corners_near<D: Dim>(body: &SoftBody<D>, at: Vec3, radius: f32) -> Vec<(Point
     if near.is_empty() {
         near.extend(nodes().min_by(|&a, &b| distance(a).total_cmp(&distance(b)).then(a.cmp(&b))));
     }
-    let corner = |node: NodeId| {
-        let own = mesh.node(node);
-        let octant = own.group.trailing_zeros() as usize;
-        (voxel_around::<D>(own.at, octant), own.at)
-    };
-    near.into_iter().map(corner).collect()
+    near.into_iter().map(|node| corner_of(body, node)).collect()
 }

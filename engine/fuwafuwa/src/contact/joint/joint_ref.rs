@@ -1,7 +1,7 @@
 //! Read access to the joints of a world.
 
 use super::{Joint, JointState};
-use crate::foundation::dim::Dim;
+use crate::foundation::dim::{Dim, DimVector};
 use std::marker::PhantomData;
 
 /// Joint of a world, for reading; see [`World::joint`](crate::World::joint).
@@ -21,6 +21,12 @@ impl<'a, D: Dim> JointRef<'a, D> {
     /// [`World::joint_anchor_positions`](crate::World::joint_anchor_positions).
     pub fn definition(&self) -> Joint<D> {
         self.state.definition()
+    }
+
+    /// Returns the force on the first anchor in the last substep [N], also while both bodies sleep. The force on
+    /// the second anchor is opposite.
+    pub fn reaction(&self) -> D::Vector {
+        D::Vector::from_vec3(self.state.reaction())
     }
 
     /// Returns the magnitude of the joint force in the last substep [N].

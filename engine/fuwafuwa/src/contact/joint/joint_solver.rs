@@ -65,7 +65,8 @@ impl JointState {
                 stiffness, length, ..
             } => {
                 let pull = stiffness * (distance - length).abs();
-                (pull - self.force).abs() > WAKE_SHARE * self.force + stiffness * WAKE_STRETCH
+                let force = self.force();
+                (pull - force).abs() > WAKE_SHARE * force + stiffness * WAKE_STRETCH
             }
         }
     }

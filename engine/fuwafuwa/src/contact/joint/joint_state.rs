@@ -8,6 +8,7 @@ use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, JointHandle};
 use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::hash::hash_state;
+use crate::object_ref::ObjectRef;
 use crate::rigid_body::solid::flat;
 use crate::rigid_body::{FARTHEST, RigidBodies, is_within_reach};
 use crate::soft_body::SoftBodies;
@@ -33,8 +34,8 @@ pub struct JointState {
     pub(super) attached: [AttachedAnchor; 2],
     /// Impulse on the first anchor in the last substep [N s].
     pub(super) impulse: Vec3,
-    /// Magnitude of the joint force in the last substep [N].
-    pub(super) force: f32,
+    /// Force on the first anchor in the last substep in which an anchor could move [N].
+    pub(super) force: Vec3,
 }
 
 hash_state! { struct JointState { anchors, kind, breaking_force, attached, impulse, force } }
@@ -66,7 +67,7 @@ impl<D: Dim> From<&Joint<D>> for JointState {
                 AttachedAnchor::Position(Vec3::ZERO),
             ],
             impulse: Vec3::ZERO,
-            force: 0.0,
+            force: Vec3::ZERO,
         }
     }
 }
@@ -95,6 +96,11 @@ impl JointState {
 
     /// Returns the magnitude of the joint force in the last substep [N].
     pub fn force(&self) -> f32 {
+        self.force.length()
+    }
+
+    /// Returns the force on the first anchor in the last substep [N]; the force on the second one is opposite.
+    pub fn reaction(&self) -> Vec3 {
         self.force
     }
 
@@ -110,7 +116,7 @@ impl JointState {
         if self.kind == JointKind::Pin {
             self.move_to_soft_anchor(bodies, rigids);
         }
-        (self.impulse, self.force) = (Vec3::ZERO, 0.0);
+        (self.impulse, self.force) = (Vec3::ZERO, Vec3::ZERO);
         Ok(())
     }
 
@@ -138,6 +144,15 @@ impl JointState {
         let [first, second] = &self.attached;
         let at = |anchor: &AttachedAnchor| Some(anchor.state(bodies, rigids)?.at);
         Some([at(first)?, at(second)?])
+    }
+
+    /// Returns the objects that the anchors are attached to; `None` for points of the world. For an anchor on
+    /// several pieces, the piece of its first node.
+    pub(crate) fn attached_objects<D: Dim>(
+        &self,
+        bodies: &SoftBodies<D>,
+    ) -> [Option<ObjectRef>; 2] {
+        self.attached.each_ref().map(|anchor| anchor.object(bodies))
     }
 
     /// Checks that all parameters are in range.
@@ -200,8 +215,9 @@ impl JointState {
     /// Returns whether a joint that was read from a file has valid values.
     #[cfg(feature = "serde")]
     pub(crate) fn is_sound<D: Dim>(&self) -> bool {
-        let is_finite = self.impulse.is_finite() && self.force >= 0.0;
-        let is_flat = self.impulse.to_array()[D::N..].iter().all(|k| *k == 0.0);
+        let vectors = [self.impulse, self.force];
+        let is_finite = vectors.iter().all(|vector| vector.is_finite());
+        let is_flat = vectors.iter().all(|&vector| flat::<D>(vector) == vector);
         let mut both = self.attached.iter().zip(&self.anchors);
         self.check().is_ok()
             && is_finite
@@ -253,8 +269,8 @@ pub(crate) fn relax<D: Dim>(
             // Keeps the last force of a joint if none of its attached bodies can move.
             continue;
         }
-        joint.force = flat::<D>(joint.impulse).length() / duration;
-        if joint.force > joint.breaking_force {
+        joint.force = flat::<D>(joint.impulse) / duration;
+        if joint.force() > joint.breaking_force {
             broken.push(id);
         }
     }

@@ -45,6 +45,8 @@ pub struct DynamicContact {
     pub speed: f32,
     /// Separation speed after a bounce [m/s]; 0 without a bounce.
     pub bounce: f32,
+    /// Normal impulse before the velocity of overlap resolution is removed [N s].
+    pub pressing: f32,
     /// Key of the touching corner or edge crossing: identifies the contact point in the next substep.
     pub key: u32,
 }

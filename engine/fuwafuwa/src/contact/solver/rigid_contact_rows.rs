@@ -165,6 +165,7 @@ fn touch<D: Dim>(
             at: point.at,
             speed: -approach,
             bounce,
+            pressing: 0.0,
             key: point.key,
         });
     }
@@ -194,7 +195,8 @@ impl DynamicContact {
     pub fn pressed(&self) -> Option<PressedContact> {
         let pressed = PressedContact {
             both: self.both,
-            impulse: self.contact.normal_impulse,
+            impulse: self.pressing,
+            sum: self.contact.start().xyz(),
             speed: self.speed,
             at: self.at,
             normal: self.contact.normal.xyz(),

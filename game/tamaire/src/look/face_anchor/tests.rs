@@ -11,7 +11,7 @@ fn ball() -> (World<Dim3>, SoftBodyHandle) {
     let mut world = World::new(WorldConfig::default()).expect("the defaults are valid");
     let grid = VoxelGrid::ball(20, 1.0).expect("the grid is valid");
     let body = SoftBody::new(grid, &[Material::default()]).expect("the defaults are valid");
-    let body = world.add_soft_body(body);
+    let body = world.add_soft_body(body).unwrap();
     (world, body)
 }
 
