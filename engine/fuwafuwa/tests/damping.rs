@@ -107,7 +107,9 @@ fn kept(damping: Damping) -> f64 {
     let wave_speed = (material.elasticity.young / f64::from(material.density)).sqrt();
     let mut world = weightless::<Dim2>();
     let grid = VoxelGrid::from_fn([16, 2, 1], 1.0 / 16.0, |_| 1).unwrap();
-    let id = world.add_soft_body(SoftBody::new(grid, &[material]).unwrap());
+    let id = world
+        .add_soft_body(SoftBody::new(grid, &[material]).unwrap())
+        .unwrap();
     set_velocities(&mut world, id, |at| {
         let phase = f64::from(at.x - 0.5) * std::f64::consts::PI;
         Vec3::X * (0.3 * libm::sin(phase)) as f32

@@ -2,9 +2,9 @@
 
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    Dim, Dim2, Dim3, DimAngular, DimVector, Event, Grip, Joint, JointAnchor, Material, NodeId,
-    ObjectRef, ObjectSelector, RigidBody, Shape, SoftBody, SoftBodyHandle, Vec3, VoxelGrid, World,
-    WorldConfig,
+    Damping, Dim, Dim2, Dim3, DimAngular, DimVector, Event, Grip, Joint, JointAnchor, Material,
+    NodeId, ObjectRef, ObjectSelector, RigidBody, Shape, SoftBody, SoftBodyHandle, Vec3, VoxelGrid,
+    World, WorldConfig,
 };
 
 const GRAVITY: f32 = 9.81;
@@ -39,7 +39,10 @@ fn rubber(young: f64) -> Material {
             poisson: 0.0,
         },
         strength: f32::INFINITY,
-        damping: 0.3,
+        damping: Damping {
+            mass: 40.0,
+            ..Damping::default()
+        },
         ..Material::default()
     }
 }

@@ -61,7 +61,9 @@ fn loaded_world_continues_fast_impact() {
         world.add_rigid_body(RigidBody::fixed(floor)).unwrap();
         let ball = VoxelGrid::ball(12, 0.05).unwrap();
         let body = SoftBody::new(ball, &[Material::default()]).unwrap();
-        let body = world.add_soft_body(body.translated(vector(0.0, 0.5, 0.0)));
+        let body = world
+            .add_soft_body(body.translated(vector(0.0, 0.5, 0.0)))
+            .unwrap();
         let linear = vector(3.0, -60.0, 0.0);
         let velocity = Velocity {
             linear,

@@ -281,7 +281,7 @@ impl<D: Dim> World<D> {
         }
         let longest = LONGEST * self.bodies[body].grid().voxel_size();
         let length = overlap.depth.min(longest).min(SPEED * self.config.tick);
-        let way = overlap.direction::<D>(&movers);
+        let way = overlap.direction(&movers);
         let approach = (movers[0].velocity - movers[1].velocity).dot(way).min(0.0);
         for ((object, mover), sign) in pair.into_iter().zip(&movers).zip([1.0, -1.0]) {
             let share = sign * mover.inverse_mass / total;
@@ -354,7 +354,7 @@ impl Overlap {
     }
 
     /// Returns the unit vector along which the first object leaves the second one.
-    fn direction<D: Dim>(&self, movers: &[Mover; 2]) -> Vec3 {
+    fn direction(&self, movers: &[Mover; 2]) -> Vec3 {
         let line = match [movers[0].centre, movers[1].centre] {
             [Some(first), Some(second)] => first - second,
             _ => self.way,
