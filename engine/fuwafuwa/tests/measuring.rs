@@ -401,7 +401,7 @@ fn check_turn<D: Dim>() {
         .add_grip(Grip::carried(body, left_end(), clamp))
         .unwrap();
     for tick in 1..=240 {
-        let angle = 1.5708 * (tick.min(180) as f32 / 180.0);
+        let angle = std::f32::consts::FRAC_PI_2 * (tick.min(180) as f32 / 180.0);
         world
             .set_target_rotation(clamp, fuwafuwa::Rotation::in_plane(angle))
             .unwrap();
