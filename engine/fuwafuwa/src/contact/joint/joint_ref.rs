@@ -23,8 +23,9 @@ impl<'a, D: Dim> JointRef<'a, D> {
         self.state.definition()
     }
 
-    /// Returns the force on the first anchor in the last substep [N], also while both bodies sleep. The force on
-    /// the second anchor is opposite.
+    /// Returns the force on the first anchor in the last substep [N]. The force on the second anchor is opposite.
+    /// While both bodies sleep, this is the force in the substep before: of a soft body that hung on the joint and
+    /// still vibrated a little, it differs from the weight by up to 15 %.
     pub fn reaction(&self) -> D::Vector {
         D::Vector::from_vec3(self.state.reaction())
     }

@@ -154,7 +154,8 @@ impl Impulse {
 
     pub fn store(&mut self, contact: &Contact) {
         self.normal_impulse = contact.normal_impulse;
-        self.friction_impulse = contact.friction_impulse;
+        // A snapshot restores 0 where friction without a normal impulse is −0.
+        self.friction_impulse = contact.friction_impulse + Row::ZERO;
         self.total += contact.normal_impulse;
     }
 }
