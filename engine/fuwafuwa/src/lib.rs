@@ -95,7 +95,7 @@ pub use topology::cell_hierarchy::Grading;
 pub use topology::changes::{Bookmark, Changes};
 pub use topology::grid::{MAX_EXTENT, MAX_VOXELS, VOXEL_SIZES, VoxelGrid};
 pub use world::{
-    AfterSubstep, BodyHandle, DEFAULT_SUBSTEPS, DEFAULT_TICK, Hooks, MAX_TICK, MIN_SUBSTEPS,
-    MIN_TICK, PieceSize, Removable, Removed, Substep, World, World2, World3, WorldConfig,
-    field_around,
+    AfterSubstep, BodyHandle, DEFAULT_SUBSTEPS, DEFAULT_TICK, Hooks, MAX_EXACT_SUBSTEPS, MAX_TICK,
+    MIN_SUBSTEPS, MIN_TICK, PieceSize, Removable, Removed, StiffBodies, Substep, World, World2,
+    World3, WorldConfig, field_around,
 };

@@ -7,7 +7,8 @@ use crate::dimension::Dimension;
 use crate::enter::enter_and_leave;
 use crate::message::{
     ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, ImpactSlowed, JointBroke,
-    NodeSplit, PieceDetached, Quarantined, Rejection, Removed, SensorEntered, SensorExited, WokeUp,
+    NodeSplit, PieceDetached, Quarantined, Rejection, Removed, SensorEntered, SensorExited,
+    StiffBodyScaled, WokeUp,
 };
 use crate::push::{change_config, push_bodies};
 use crate::queue::Queue;
@@ -93,6 +94,7 @@ impl<D: Dimension> Plugin for FuwafuwaPlugin<D> {
             .add_message::<FellAsleep>()
             .add_message::<WokeUp>()
             .add_message::<ImpactSlowed>()
+            .add_message::<StiffBodyScaled>()
             .add_message::<Quarantined>()
             .add_message::<Rejection>();
         if app.world().contains_resource::<AssetServer>() {

@@ -4,7 +4,8 @@ use crate::convert::bevy_vector;
 use crate::dimension::Dimension;
 use crate::message::{
     ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, ImpactSlowed, JointBroke,
-    NodeSplit, PieceDetached, Quarantined, Removed, SensorEntered, SensorExited, WokeUp,
+    NodeSplit, PieceDetached, Quarantined, Removed, SensorEntered, SensorExited, StiffBodyScaled,
+    WokeUp,
 };
 use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;
@@ -21,6 +22,7 @@ pub struct Writers<'w> {
     fell_asleep: MessageWriter<'w, FellAsleep>,
     woke_up: MessageWriter<'w, WokeUp>,
     impact_slowed: MessageWriter<'w, ImpactSlowed>,
+    stiff_body_scaled: MessageWriter<'w, StiffBodyScaled>,
     quarantined: MessageWriter<'w, Quarantined>,
     contact_started: MessageWriter<'w, ContactStarted>,
     contact_ended: MessageWriter<'w, ContactEnded>,
@@ -167,6 +169,18 @@ impl Writers<'_> {
                 let body = of_body(body)?;
                 self.impact_slowed
                     .write(ImpactSlowed { body, piece, share });
+            }
+            Event::StiffBodyScaled {
+                body,
+                mass_scale,
+                stiffness_scale,
+            } => {
+                let body = of_body(body)?;
+                self.stiff_body_scaled.write(StiffBodyScaled {
+                    body,
+                    mass_scale,
+                    stiffness_scale,
+                });
             }
             Event::Quarantined { body, piece } => {
                 let body = of_body(body)?;
