@@ -1,6 +1,7 @@
 //! Checks of the mechanics against theory and reference solutions. The exit status is 1 if a check fails.
 
 mod beam;
+mod bounce;
 mod damping;
 mod doughnut;
 mod energy;
@@ -15,6 +16,7 @@ mod period;
 mod pile;
 mod random;
 mod sag;
+mod scale;
 mod slope;
 mod slow;
 mod spin;
@@ -73,6 +75,10 @@ enum Which {
     FreeFall,
     /// Fast bodies must not pass through a plate, must keep their momentum, and a pin on a fast carrier must hold.
     Impact,
+    /// Bodies of 1 m to 0.5 mm must rest, tear and oscillate alike, exact or with scaled mass.
+    Scale,
+    /// Bodies of 1 m to 2 mm with scaled mass must bounce like exact ones, up to a stated scale.
+    Bounce,
     /// All checks.
     All,
 }
@@ -81,7 +87,7 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 16] = [
+    let checks: [(Which, Check); 18] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
@@ -98,6 +104,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         (Which::Doughnut, doughnut::check),
         (Which::FreeFall, free_fall::check),
         (Which::Impact, impact::check),
+        (Which::Scale, scale::check),
+        (Which::Bounce, bounce::check),
     ];
     let mut outcomes = Vec::new();
     for (name, check) in checks {
