@@ -1,6 +1,7 @@
 //! Output of results: aligned tables, outcomes of checks, a progress bar.
 
 use anyhow::Result;
+use fuwafuwa::{Dim, SoftBody, StiffBodies, World};
 use fuwafuwa_scenes::Scene;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
@@ -15,6 +16,34 @@ pub fn notes(scene: &Scene) {
     for note in scene.notes() {
         output::warn(format_args!("note: {note}"));
     }
+}
+
+/// Returns the number of soft bodies with scaled mass or stiffness, and the largest scale of a soft body, 1 if none
+/// is scaled.
+pub fn scales<D: Dim>(world: &World<D>) -> (u32, f64) {
+    let scale = |body: &SoftBody<D>| body.mass_scale() / body.stiffness_scale();
+    let scales = world.soft_bodies().map(|(_, body)| scale(body));
+    scales.fold((0, 1.0), |(count, largest), scale| {
+        (count + u32::from(scale > 1.0), scale.max(largest))
+    })
+}
+
+/// Prints a warning to stderr if soft bodies are scaled, because they require more substeps than the world allows.
+pub fn warn_of_scales<D: Dim>(world: &World<D>) {
+    let (count, largest) = scales(world);
+    if count == 0 {
+        return;
+    }
+    let what = match world.config().stiff_bodies {
+        StiffBodies::Softened => "their stiffness is divided",
+        StiffBodies::MassScaled | StiffBodies::Exact => {
+            "the inertia of their deformation is multiplied"
+        }
+    };
+    output::warn(format!(
+        "{count} soft bodies require more substeps than {}: {what} by up to {largest:.3}",
+        world.substeps()
+    ));
 }
 
 /// Outcome of a check for one measured value.

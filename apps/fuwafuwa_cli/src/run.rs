@@ -2,7 +2,7 @@
 
 use crate::report::{self, Progress, print_json};
 use anyhow::{Context, Result};
-use fuwafuwa::{Dim, Dim2, Dim3, Event, Vec3, World};
+use fuwafuwa::{Dim, Dim2, Dim3, Event, StiffBodies, Vec3, World};
 use fuwafuwa_painter::solid::{Camera, Scene3d};
 use fuwafuwa_painter::worlds;
 use fuwafuwa_painter::{Painter, Pixmap, film};
@@ -63,6 +63,10 @@ struct Summary {
     quarantined: usize,
     /// Impacts that were too fast for the substeps, one per piece and tick.
     slowed_impacts: usize,
+    /// Soft bodies with scaled mass or stiffness in the last tick.
+    scaled_bodies: u32,
+    /// Largest scale of a soft body in the last tick; 1 if none is scaled.
+    largest_scale: f64,
     hash: String,
 }
 
@@ -111,7 +115,10 @@ impl Filmed for Dim3 {
 
 /// Runs the scene.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let scene = open_scene(&arguments.scene, &arguments.changes)?;
+    let mut scene = open_scene(&arguments.scene, &arguments.changes)?;
+    if scene.game.is_none() {
+        scene.stiff_bodies.get_or_insert(StiffBodies::Exact);
+    }
     report::notes(&scene);
     match scene.dim {
         2 => run_in::<Dim2>(&scene, arguments),
@@ -201,6 +208,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         let bodies = world.soft_bodies();
         bodies.flat_map(|(_, body)| body.piece_views())
     };
+    let (scaled_bodies, largest_scale) = report::scales(&world);
     let summary = Summary {
         scene: arguments.scene.clone(),
         ticks,
@@ -211,6 +219,8 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
         asleep: pieces().filter(|piece| piece.asleep).count(),
         quarantined: pieces().filter(|piece| piece.quarantined).count(),
         slowed_impacts,
+        scaled_bodies,
+        largest_scale,
         hash: format!("{:016x}", world.hash()),
     };
     if slowed_impacts > 0 {
@@ -218,6 +228,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
             "{slowed_impacts} impacts were too fast for the substeps and were slowed"
         ));
     }
+    report::warn_of_scales(&world);
     if arguments.json {
         print_json(&summary)?;
     } else {

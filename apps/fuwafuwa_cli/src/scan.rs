@@ -3,6 +3,7 @@
 use crate::report::{self, Progress};
 use crate::run::{check_folder, write};
 use anyhow::{Context, Result};
+use fuwafuwa::StiffBodies;
 use fuwafuwa_scan::{
     Label, MAX_FILE_BYTES, Options, Organ, PlacementSource, Scan, Segmentation, Threshold, warnings,
 };
@@ -242,6 +243,7 @@ fn write_files(out: &Path, organ: &Organ, summary: &Summary) -> Result<()> {
 #[derive(Serialize)]
 struct OrganScene<'a> {
     dim: u8,
+    stiff_bodies: StiffBodies,
     seconds: f32,
     view: [[f32; 3]; 2],
     material: Vec<OrganMaterial>,
@@ -292,6 +294,7 @@ fn scene(model: &str, size: [usize; 3], summary: &Summary) -> Result<String> {
     };
     let scene = OrganScene {
         dim: 3,
+        stiff_bodies: StiffBodies::Exact,
         seconds: 2.0,
         view: [-around, around].map(|far| sides.map(|side| 0.5 * side + far)),
         material: vec![material; last.into()],

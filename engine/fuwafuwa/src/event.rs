@@ -155,6 +155,17 @@ pub enum Event<D: Dim> {
         /// Smallest ratio of displacement to velocity × substep in this tick, 0 to 1.
         share: f32,
     },
+    /// The scale of a soft body that requires more substeps than the world allows began to act, changed or
+    /// ended; see [`WorldConfig::stiff_bodies`](crate::WorldConfig::stiff_bodies). Sent in the first tick
+    /// after the body was added or the configuration changed. Both scales are 1 if the body is exact again.
+    StiffBodyScaled {
+        /// The body.
+        body: SoftBodyHandle,
+        /// Factor on the inertia of deformation, see [`SoftBody::mass_scale`](crate::SoftBody::mass_scale).
+        mass_scale: f32,
+        /// Factor on Young's modulus, see [`SoftBody::stiffness_scale`](crate::SoftBody::stiffness_scale).
+        stiffness_scale: f32,
+    },
 }
 
 hash_state! {
@@ -178,6 +189,7 @@ hash_state! {
         LeftRange { object },
         Quarantined { body, piece },
         ImpactSlowed { body, piece, share },
+        StiffBodyScaled { body, mass_scale, stiffness_scale },
     }
 }
 
@@ -238,7 +250,7 @@ impl<D: Dim> Contact<D> {
 }
 
 /// Summary of one tick.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepReport {
     /// Number of substeps in the tick.
@@ -260,4 +272,10 @@ pub struct StepReport {
     /// Number of soft bodies with less stiffness damping than their materials specify, because the substep
     /// limits it, see [`World::acting_damping`](crate::World::acting_damping).
     pub damping_limited: u32,
+    /// Number of soft bodies that require more substeps than the world allows, and whose mass or stiffness is
+    /// therefore scaled, see [`WorldConfig::stiff_bodies`](crate::WorldConfig::stiff_bodies).
+    pub scaled_bodies: u32,
+    /// Largest scale of a soft body: its mass scale, or the inverse of its stiffness scale. It is the squared
+    /// ratio of the required and the allowed number of substeps; 1 if no body is scaled.
+    pub largest_scale: f32,
 }

@@ -99,6 +99,6 @@ pub use topology::changes::{Bookmark, Changes};
 pub use topology::grid::{MAX_EXTENT, MAX_VOXELS, VOXEL_SIZES, VoxelGrid};
 pub use world::{
     AfterSubstep, BodyHandle, DEFAULT_SUBSTEPS, DEFAULT_TICK, Grip, GripDrive, GripRef, Hooks,
-    MAX_TICK, MIN_SUBSTEPS, MIN_TICK, PieceSize, ReactionForce, Removable, Removed, Substep, World,
-    World2, World3, WorldConfig, field_around,
+    MAX_EXACT_SUBSTEPS, MAX_TICK, MIN_SUBSTEPS, MIN_TICK, PieceSize, ReactionForce, Removable,
+    Removed, StiffBodies, Substep, World, World2, World3, WorldConfig, field_around,
 };

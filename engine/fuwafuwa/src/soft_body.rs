@@ -23,9 +23,11 @@ pub(crate) mod cooldowns;
 mod derived_caches;
 mod integration;
 mod piece_removal;
+pub(crate) mod piece_response;
 mod placement;
 mod release;
 mod sleep_flags;
+mod stiff_body;
 
 use crate::error::{Error, require};
 use crate::foundation::arena::{Arena, SoftBodyHandle};
@@ -49,15 +51,6 @@ use body_topology::Topology;
 use caches::Cache;
 use glam::DVec3;
 use glam::Vec3;
-
-/// Courant number of a substep: the fastest pressure wave travels at most this fraction of a voxel per
-/// substep.
-///
-/// The fastest mode of a body at rest is the oscillation of a single free voxel. Let the voxel have the width
-/// s, the angular frequency Ω and the wave speed c. The oscillation is stable up to a Courant number of 2c /
-/// Ωs: 0.73 in 3D and 0.84 in 2D, at a Poisson's ratio of 0.3. Squashed elements oscillate faster. At 0.6, a
-/// ball stays stable even if it is squashed to 40 % of its height and hit at its wave speed.
-const COURANT: f64 = 0.6;
 
 /// Arena of the soft bodies of a world.
 pub type SoftBodies<D> = Arena<SoftBodyHandle, SoftBody<D>>;
@@ -122,6 +115,7 @@ impl<D: Dim> SoftBody<D> {
                 pieces: Pieces::new(&mesh),
                 materials: materials.to_vec(),
                 stiffness_scale: 1.0,
+                mass_scale: 1.0,
                 grid,
                 connectivity,
                 hierarchy,
@@ -204,7 +198,7 @@ impl<D: Dim> SoftBody<D> {
     pub fn free_node(&mut self, id: NodeId) {
         self.state.fixed[id] = false;
         if !self.topology.pieces.sleeps(id) {
-            self.state.inverse_mass[id] = 1.0 / self.state.mass[id];
+            self.state.inverse_mass[id] = self.inverse_mass_of(id);
         }
     }
 
@@ -345,38 +339,6 @@ impl<D: Dim> SoftBody<D> {
     /// Returns whether any material in use has a finite strength; otherwise the body cannot tear.
     pub(crate) fn can_tear(&self) -> bool {
         self.cache.properties.least_strength < f32::INFINITY
-    }
-
-    /// Longest stable substep [s]: 0.6 h / c, with the voxel size h [m] and the speed c [m/s] of the fastest
-    /// pressure wave. The speed follows from the present stiffness: see [`SoftBody::stiffness_scale`].
-    pub fn longest_substep(&self) -> f64 {
-        let fastest = self.cache.properties.fastest_wave * self.topology.stiffness_scale.sqrt();
-        COURANT * f64::from(self.topology.grid.voxel_size()) / fastest
-    }
-
-    /// Factor by which Young's modulus was lowered to keep the substep stable; 1 = unchanged.
-    pub fn stiffness_scale(&self) -> f64 {
-        self.topology.stiffness_scale
-    }
-
-    /// Sets the stiffness scale to the largest value, at most 1, at which a substep of `duration` [s] is
-    /// stable.
-    pub(crate) fn scale_stiffness_for(&mut self, duration: f64) {
-        let size = f64::from(self.topology.grid.voxel_size());
-        let ratio = COURANT * size / self.cache.properties.fastest_wave / duration;
-        let stiffness_scale = (ratio * ratio).min(1.0);
-        if stiffness_scale == self.topology.stiffness_scale {
-            return;
-        }
-        self.topology.stiffness_scale = stiffness_scale;
-        let elasticities = elasticities(&self.topology.materials, stiffness_scale);
-        self.state.batches.set_elasticities(&elasticities);
-    }
-
-    /// Speed of the fastest pressure wave [m/s] at the full stiffness of the materials, that is, at a
-    /// stiffness scale of 1.
-    pub(crate) fn fastest_wave(&self) -> f64 {
-        self.cache.properties.fastest_wave
     }
 
     pub(crate) fn states<'a>(

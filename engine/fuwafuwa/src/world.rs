@@ -38,7 +38,10 @@ use crate::world::sleep::{
     all_motions, fall_asleep, fall_asleep_rigid, filter_centres, pressed_sleepers, wake,
 };
 pub use body_handle::{BodyHandle, Removable};
-pub use config::{DEFAULT_SUBSTEPS, DEFAULT_TICK, MAX_TICK, MIN_SUBSTEPS, MIN_TICK, WorldConfig};
+pub use config::{
+    DEFAULT_SUBSTEPS, DEFAULT_TICK, MAX_EXACT_SUBSTEPS, MAX_TICK, MIN_SUBSTEPS, MIN_TICK,
+    StiffBodies, WorldConfig,
+};
 use contact_events::SettlingContact;
 use grips::Grips;
 pub use grips::{Grip, GripDrive, GripRef};
@@ -180,6 +183,7 @@ impl<D: Dim> World<D> {
         }
         report.inverted = self.bodies.iter().map(SoftBody::inverted_count).sum();
         report.damping_limited = self.limited_bodies(duration);
+        self.report_scaled_bodies(&mut report);
         self.quarantine(&mut report);
         self.end_fast_impacts(&mut report);
         self.sleep();
@@ -189,20 +193,41 @@ impl<D: Dim> World<D> {
 
     /// Returns the number of substeps in a tick. The stiffest body determines this number, within limits: in
     /// 1/60 s there are at least [`DEFAULT_SUBSTEPS`] and at most [`WorldConfig::max_substeps`]. If the
-    /// maximum is below the minimum, the maximum applies.
+    /// maximum is below the minimum, the maximum applies. Under [`StiffBodies::Exact`] the maximum is
+    /// [`MAX_EXACT_SUBSTEPS`].
     pub fn substeps(&self) -> u32 {
         let longest = self.bodies.iter().map(SoftBody::longest_substep);
         let longest = longest.fold(f64::INFINITY, f64::min);
         let required = (f64::from(self.config.tick) / longest - 1e-6).ceil() as u32;
-        let max = self.config.max_substeps_per_tick();
-        let usual = self.config.per_tick(60.0 * f64::from(DEFAULT_SUBSTEPS));
-        required.clamp(usual.min(max), max)
+        let config = &self.config;
+        required.clamp(
+            config.min_substeps_per_tick(),
+            config.max_substeps_per_tick(),
+        )
     }
 
     /// Returns the number of soft bodies of which the substep limits the stiffness damping.
     fn limited_bodies(&self, duration: f32) -> u32 {
         let is_limited = |body: &&SoftBody<D>| body.is_damping_limited(duration);
         self.bodies.iter().filter(is_limited).count() as u32
+    }
+
+    /// Counts the scaled soft bodies, and sends an event for each body with a scale that is new.
+    fn report_scaled_bodies(&mut self, report: &mut StepReport) {
+        report.largest_scale = 1.0;
+        for (id, body) in self.bodies.entries_mut() {
+            let (mass_scale, stiffness_scale) = (body.mass_scale(), body.stiffness_scale());
+            let scale = (mass_scale / stiffness_scale) as f32;
+            report.scaled_bodies += u32::from(scale > 1.0);
+            report.largest_scale = report.largest_scale.max(scale);
+            if body.take_scale_changed() {
+                self.events.push(Event::StiffBodyScaled {
+                    body: id,
+                    mass_scale: mass_scale as f32,
+                    stiffness_scale: stiffness_scale as f32,
+                });
+            }
+        }
     }
 
     fn start_tick(&mut self) {
@@ -309,6 +334,7 @@ impl<D: Dim> World<D> {
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let (broken, woken) = joint::solve(&mut self.joints, bodies, rigids, rest, duration);
         let woken_by_knives = self.solve_knife_contacts(duration);
+        self.bodies.iter_mut().for_each(SoftBody::apply_responses);
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
         let mut hits = self.contacts.find(bodies, rigids, nearby, rest, duration);
@@ -330,8 +356,12 @@ impl<D: Dim> World<D> {
         for rigid in self.rigids.iter_mut() {
             rigid.integrate_pose(duration);
         }
+        if self.joints.iter().next().is_some() || self.contacts.relax_soft_bodies() {
+            { self.bodies.iter_mut() }.for_each(|body| body.measure_responses(duration));
+        }
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let broken = joint::relax(&mut self.joints, bodies, rigids, duration);
+        bodies.iter_mut().for_each(SoftBody::apply_responses);
         self.contacts
             .relax(bodies, rigids, &mut self.nearby, duration);
         self.remove_broken_joints(broken);

@@ -558,3 +558,34 @@ fn soft_body_leaves_rigid_bodies_in_which_it_was_placed() {
     check::<Dim2>();
     check::<Dim3>();
 }
+
+/// A bar that is so stiff that its mass is scaled stretches by F L / E A, and is held by the force that pulls it.
+fn stiff_bar_is_pulled<D: Dim>() {
+    let mut world = weightless::<D>();
+    let (young, strain) = (4e7, 0.01);
+    let bar = world.add_soft_body(bar::<D>(young)).unwrap();
+    assert!(world[bar].mass_scale() > 10.0);
+    let left = Shape::half_space(D::Vector::X, D::Vector::X * 0.01);
+    let right = Shape::half_space(-D::Vector::X, D::Vector::X * 0.79);
+    let held = world.add_grip(Grip::still(bar, left)).unwrap();
+    let area = if D::N == 3 { 0.04 } else { 0.2 };
+    let force = D::Vector::X * (young as f32 * area * strain);
+    world.add_grip(Grip::force(bar, right, force)).unwrap();
+    for _ in 0..300 {
+        world.step();
+    }
+    let ends = world[bar]
+        .nodes_in(&right)
+        .map(|node| world[bar].node_state(node).0[0]);
+    let end = ends.fold(0.0, f32::max);
+    let stretched = (end - 0.8) / (0.8 * strain);
+    assert!((stretched - 1.0).abs() < 0.02, "{stretched}");
+    let reaction = world.grip(held).unwrap().reaction().force[0] / -force[0];
+    assert!((reaction - 1.0).abs() < 0.02, "{reaction}");
+}
+
+#[test]
+fn grip_force_stretches_bar_of_scaled_mass() {
+    stiff_bar_is_pulled::<Dim2>();
+    stiff_bar_is_pulled::<Dim3>();
+}

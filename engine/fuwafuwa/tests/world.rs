@@ -2,8 +2,8 @@
 
 use fuwafuwa::{
     Blade, Damping, Dim, Dim2, Dim3, DimVector, ElementId, Event, Facet, Material, MotionType,
-    NodeId, PieceView, RigidBody, Shape, SoftBody, Vec2, Vec3, Velocity, VoxelGrid, World,
-    WorldConfig,
+    NodeId, PieceView, RigidBody, Shape, SoftBody, StiffBodies, Vec2, Vec3, Velocity, VoxelGrid,
+    World, WorldConfig,
 };
 
 /// Returns the vector (x, y, z) in the dimension of `V`; in 2D, z is dropped.
@@ -256,7 +256,11 @@ fn inverted_body_recovers_and_stays_finite() {
 /// factor.
 #[test]
 fn too_stiff_body_is_softened() {
-    let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
+    let mut world = World::<Dim2>::new(WorldConfig {
+        stiff_bodies: StiffBodies::Softened,
+        ..WorldConfig::default()
+    })
+    .unwrap();
     let floor = Shape::half_space(Vec2::Y, Vec2::ZERO);
     world
         .add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))

@@ -363,12 +363,15 @@ fn set_config_applies_to_running_world() {
                 .translated(Vec2::new(5.0, 0.0)),
         )
         .unwrap();
-    let soft = world[hard].stiffness_scale();
+    let few_substeps = world[hard].mass_scale();
     world.set_config(few).unwrap();
-    let softer = world[hard].stiffness_scale();
-    assert!(softer < soft, "{softer} {soft}");
+    let fewer_substeps = world[hard].mass_scale();
+    assert!(
+        fewer_substeps > few_substeps,
+        "{fewer_substeps} {few_substeps}"
+    );
     world.set_config(upwards).unwrap();
-    assert_eq!(world[hard].stiffness_scale(), soft);
+    assert_eq!(world[hard].mass_scale(), few_substeps);
     let bad = WorldConfig { drag: -1.0, ..few };
     let told = world.set_config(bad).unwrap_err();
     assert_eq!(told.to_string(), "drag must be 0 to 10, given -1.0");

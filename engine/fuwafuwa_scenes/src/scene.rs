@@ -3,7 +3,7 @@
 //! ```toml
 //! dim = 2
 //! gravity = [0.0, -9.81, 0.0]     # [m/s²]
-//! tick = 0.0166666667             # [s]; tick, drag, max_substeps and sleep default to those of WorldConfig
+//! tick = 0.0166666667             # [s]; tick, drag, max_substeps, stiff_bodies and sleep default to WorldConfig
 //!
 //! [[material]]                    # number 1
 //! young = 5000.0                  # [Pa]; missing fields take the values of `Material::default`
@@ -103,7 +103,9 @@ pub use shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, Obstac
 use crate::import::ImportNote;
 use budget::Budget;
 use error::{FieldError, Origin, require, vector_of};
-use fuwafuwa::{DEFAULT_TICK, Dim, MIN_TICK, Material, Shape, VoxelGrid, World, WorldConfig};
+use fuwafuwa::{
+    DEFAULT_TICK, Dim, MIN_TICK, Material, Shape, StiffBodies, VoxelGrid, World, WorldConfig,
+};
 use joint::JointTargets;
 use materials::SceneMaterials;
 use serde::{Deserialize, Serialize};
@@ -143,6 +145,11 @@ pub struct Scene {
     /// Maximum number of substeps in 1/60 s, default 64.
     #[serde(default = "usual_substeps", alias = "most_substeps")]
     pub max_substeps: u32,
+    /// Treatment of soft bodies that require more than `max_substeps`: `"exact"`, `"mass_scaled"` or
+    /// `"softened"`. If the key is missing, programs choose: the command line runs scenes that are no level
+    /// of the game with `"exact"`, everything else uses the default of `WorldConfig`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiff_bodies: Option<StiffBodies>,
     /// Length of a tick [s], default 1/60.
     #[serde(default = "usual_tick", skip_serializing_if = "is_usual_tick")]
     pub tick: f32,
@@ -284,6 +291,7 @@ impl Scene {
             gravity,
             drag: self.drag,
             max_substeps: self.max_substeps,
+            stiff_bodies: self.stiff_bodies.unwrap_or_default(),
             tick: self.tick,
             sleep: self.sleep,
         };

@@ -3,7 +3,8 @@
 
 use fuwafuwa::{
     Dim, Dim2, Dim3, DimVector, Event, Joint, JointAnchor, Layers, Material, RigidBody,
-    RigidBodyRef, Rotation, Shape, SoftBody, Vec2, Vec3, VoxelGrid, World, WorldConfig,
+    RigidBodyRef, Rotation, Shape, SoftBody, StiffBodies, Vec2, Vec3, VoxelGrid, World,
+    WorldConfig,
 };
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::NAMED;
@@ -13,6 +14,7 @@ dim = DIM
 gravity = [0.3, -9.0, 0.0]
 drag = 0.1
 tick = 0.0083333333
+stiff_bodies = "softened"
 
 [[material]]
 young = 6000.0
@@ -163,6 +165,7 @@ fn build_applies_fields_of_scene() {
     let scene = Scene::read("rich", &rich(2), &[]).unwrap();
     let world = scene.build::<Dim2>().unwrap();
     assert!((world.config().tick - 1.0 / 120.0).abs() < 1e-8);
+    assert_eq!(world.config().stiff_bodies, StiffBodies::Softened);
     let bodies: Vec<&SoftBody<Dim2>> = world.soft_bodies().map(|(_, body)| body).collect();
     let layers = Layers {
         memberships: 2,

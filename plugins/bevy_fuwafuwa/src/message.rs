@@ -179,6 +179,18 @@ pub struct LeftRange {
     pub piece: Option<PieceId>,
 }
 
+/// The scale of a soft body that requires more substeps than the world allows began to act, changed or ended; see
+/// [`Event::StiffBodyScaled`](fuwafuwa::Event::StiffBodyScaled).
+#[derive(Message, Copy, Clone, Debug, PartialEq)]
+pub struct StiffBodyScaled {
+    /// The soft body.
+    pub body: Entity,
+    /// Factor on the inertia of deformation; 1 = unchanged.
+    pub mass_scale: f32,
+    /// Factor on Young's modulus; 1 = unchanged.
+    pub stiffness_scale: f32,
+}
+
 /// A piece got non-finite positions or velocities and was stopped permanently.
 #[derive(Message, Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Quarantined {

@@ -8,7 +8,7 @@ use crate::enter::enter_and_leave;
 use crate::message::{
     ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, ImpactSlowed, JointBroke,
     LeftRange, NodeSplit, Overlapped, PieceDetached, Quarantined, Rejection, Removed,
-    SensorEntered, SensorExited, WokeUp,
+    SensorEntered, SensorExited, StiffBodyScaled, WokeUp,
 };
 use crate::push::{change_config, push_bodies};
 use crate::queue::Queue;
@@ -96,6 +96,7 @@ impl<D: Dimension> Plugin for FuwafuwaPlugin<D> {
             .add_message::<ImpactSlowed>()
             .add_message::<Overlapped>()
             .add_message::<LeftRange>()
+            .add_message::<StiffBodyScaled>()
             .add_message::<Quarantined>()
             .add_message::<Rejection>();
         if app.world().contains_resource::<AssetServer>() {

@@ -5,7 +5,7 @@ use crate::dimension::Dimension;
 use crate::message::{
     ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, ImpactSlowed, JointBroke,
     LeftRange, NodeSplit, Overlapped, PieceDetached, Quarantined, Removed, SensorEntered,
-    SensorExited, WokeUp,
+    SensorExited, StiffBodyScaled, WokeUp,
 };
 use crate::world::SoftWorld;
 use bevy_ecs::change_detection::ResMut;
@@ -22,6 +22,7 @@ pub struct Writers<'w> {
     fell_asleep: MessageWriter<'w, FellAsleep>,
     woke_up: MessageWriter<'w, WokeUp>,
     impact_slowed: MessageWriter<'w, ImpactSlowed>,
+    stiff_body_scaled: MessageWriter<'w, StiffBodyScaled>,
     quarantined: MessageWriter<'w, Quarantined>,
     overlapped: MessageWriter<'w, Overlapped>,
     left_range: MessageWriter<'w, LeftRange>,
@@ -182,6 +183,18 @@ impl Writers<'_> {
             Event::LeftRange { object } => {
                 let (body, piece) = of(object)?;
                 self.left_range.write(LeftRange { body, piece });
+            }
+            Event::StiffBodyScaled {
+                body,
+                mass_scale,
+                stiffness_scale,
+            } => {
+                let body = of_body(body)?;
+                self.stiff_body_scaled.write(StiffBodyScaled {
+                    body,
+                    mass_scale,
+                    stiffness_scale,
+                });
             }
             Event::Quarantined { body, piece } => {
                 let body = of_body(body)?;

@@ -2,8 +2,8 @@
 
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
-    DEFAULT_TICK, Damping, Dim, DimVector, MIN_SUBSTEPS, Material, RigidBody, Shape, SoftBody, VoxelGrid,
-    World, WorldConfig,
+    DEFAULT_TICK, Damping, Dim, DimVector, MIN_SUBSTEPS, Material, RigidBody, Shape, SoftBody, StiffBodies,
+    VoxelGrid, World, WorldConfig,
 };
 
 use crate::world::{Falling, Span};
@@ -30,6 +30,7 @@ pub fn world<D: Dim>(scene: &Drop, substeps: Option<usize>) -> Result<World<D>> 
     let required = (f64::from(DEFAULT_TICK) / body.longest_substep()).ceil() as u32;
     let max_substeps = substeps.map_or(required, |substeps| substeps as u32);
     let mut world = World::<D>::new(WorldConfig {
+        stiff_bodies: StiffBodies::Softened,
         gravity: D::Vector::Y * -scene.gravity,
         drag: 0.0,
         max_substeps: max_substeps.clamp(MIN_SUBSTEPS, MAX_SUBSTEPS),

@@ -3,12 +3,13 @@
 
 use super::motion::{centre, material, throw};
 use super::parallel;
+use super::scale::{TREATMENTS, name};
 use crate::report::{Outcome, Progress};
 use anyhow::{Context, Result, ensure};
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::{
     Dim, Dim2, Dim3, DimVector, Event, Joint, JointAnchor, Material, RigidBody, Shape, SoftBody,
-    SoftBodyHandle, Vec3, VoxelGrid, World, WorldConfig,
+    SoftBodyHandle, StiffBodies, Vec3, VoxelGrid, World, WorldConfig,
 };
 
 /// Bodies: number of dimensions, voxels across, and width [m].
@@ -45,17 +46,23 @@ const PINNED: f64 = 1.0;
 pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
     let cases: Vec<_> = { BODIES.iter() }
         .flat_map(|&body| SPEEDS.map(|speed| (body, speed)))
+        .flat_map(|(body, speed)| TREATMENTS.map(|treatment| (body, speed, treatment)))
         .collect();
-    let found = parallel::each(&cases, progress, |&((dim, n, width), speed)| match dim {
-        2 => both_impacts::<Dim2>(n, width, speed),
-        _ => both_impacts::<Dim3>(n, width, speed),
-    })?;
+    let found = parallel::each(
+        &cases,
+        progress,
+        |&((dim, n, width), speed, treatment)| match dim {
+            2 => both_impacts::<Dim2>(n, width, speed, treatment),
+            _ => both_impacts::<Dim3>(n, width, speed, treatment),
+        },
+    )?;
     let mut outcomes = Vec::new();
-    for (&((dim, n, width), speed), [thrown, pair]) in cases.iter().zip(&found) {
+    for (&((dim, n, width), speed, treatment), [thrown, pair]) in cases.iter().zip(&found) {
         let case = |what: &str| {
             format!(
-                "{what} {dim}D, n = {n}, {} mm wide, {speed} m/s",
-                1e3 * width
+                "{what} {dim}D, n = {n}, {} mm wide, {speed} m/s, {}",
+                1e3 * width,
+                name(treatment)
             )
         };
         let entered = case("thrown at a plate, entered [m]");
@@ -100,10 +107,15 @@ struct Impact {
     momentum: f64,
 }
 
-fn both_impacts<D: Dim>(n: usize, width: f32, speed: f32) -> Result<[Impact; 2]> {
+fn both_impacts<D: Dim>(
+    n: usize,
+    width: f32,
+    speed: f32,
+    treatment: StiffBodies,
+) -> Result<[Impact; 2]> {
     Ok([
-        on_plate::<D>(n, width, speed)?,
-        on_each_other::<D>(n, width, speed)?,
+        on_plate::<D>(n, width, speed, treatment)?,
+        on_each_other::<D>(n, width, speed, treatment)?,
     ])
 }
 
@@ -111,10 +123,11 @@ fn vector<D: Dim>(x: f32, y: f32, z: f32) -> D::Vector {
     D::Vector::from_vec3(Vec3::new(x, y, if D::N == 3 { z } else { 0.0 }))
 }
 
-fn world<D: Dim>() -> Result<World<D>> {
+fn world<D: Dim>(treatment: StiffBodies) -> Result<World<D>> {
     let gravity = D::Vector::ZERO;
     Ok(World::new(WorldConfig {
         gravity,
+        stiff_bodies: treatment,
         ..WorldConfig::default()
     })?)
 }
@@ -156,8 +169,8 @@ fn run<D: Dim>(
 }
 
 /// Throws a ball at a plate.
-fn on_plate<D: Dim>(n: usize, width: f32, speed: f32) -> Result<Impact> {
-    let mut world = world::<D>()?;
+fn on_plate<D: Dim>(n: usize, width: f32, speed: f32, treatment: StiffBodies) -> Result<Impact> {
+    let mut world = world::<D>(treatment)?;
     let plate = Shape::Box {
         centre: vector::<D>(0.0, -0.5 * PLATE, 0.0),
         half: vector::<D>(3.0, 0.5 * PLATE, 3.0),
@@ -181,8 +194,13 @@ fn on_plate<D: Dim>(n: usize, width: f32, speed: f32) -> Result<Impact> {
 }
 
 /// Throws two balls at each other.
-fn on_each_other<D: Dim>(n: usize, width: f32, speed: f32) -> Result<Impact> {
-    let mut world = world::<D>()?;
+fn on_each_other<D: Dim>(
+    n: usize,
+    width: f32,
+    speed: f32,
+    treatment: StiffBodies,
+) -> Result<Impact> {
+    let mut world = world::<D>(treatment)?;
     let apart = 0.5 * (DISTANCE + width);
     let balls = [
         add_ball(&mut world, n, width, [0.0, apart], -0.5 * speed)?,
@@ -252,7 +270,7 @@ mod tests {
 
     #[test]
     fn ball_does_not_pass_a_thin_plate() {
-        let impact = on_plate::<Dim2>(16, 0.05, 300.0).unwrap();
+        let impact = on_plate::<Dim2>(16, 0.05, 300.0, StiffBodies::MassScaled).unwrap();
         assert!(
             impact.entered < ENTERED && impact.is_fast && impact.slowed > 0.0,
             "{impact:?}"
@@ -261,7 +279,7 @@ mod tests {
 
     #[test]
     fn fast_balls_keep_their_momentum() {
-        let impact = on_each_other::<Dim2>(16, 0.1, 100.0).unwrap();
+        let impact = on_each_other::<Dim2>(16, 0.1, 100.0, StiffBodies::MassScaled).unwrap();
         let is_hit = impact.slowed > 0.0 && impact.approach < APPROACH;
         assert!(is_hit && impact.momentum < MOMENTUM, "{impact:?}");
     }

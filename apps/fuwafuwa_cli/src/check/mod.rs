@@ -1,6 +1,7 @@
 //! Checks of the mechanics against theory and reference solutions. The exit status is 1 if a check fails.
 
 mod beam;
+mod bounce;
 mod damping;
 mod doughnut;
 mod energy;
@@ -18,6 +19,7 @@ mod pile;
 mod random;
 mod reaction;
 mod sag;
+mod scale;
 mod slope;
 mod slow;
 mod spin;
@@ -82,6 +84,10 @@ enum Which {
     Reaction,
     /// Objects placed inside each other must come apart.
     Overlap,
+    /// Bodies of 1 m to 0.5 mm must rest, tear and oscillate alike, exact or with scaled mass.
+    Scale,
+    /// Bodies of 1 m to 2 mm with scaled mass must bounce like exact ones, up to a stated scale.
+    Bounce,
     /// All checks.
     All,
 }
@@ -90,7 +96,7 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 19] = [
+    let checks: [(Which, Check); 21] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
@@ -110,6 +116,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         (Which::Far, far::check),
         (Which::Reaction, reaction::check),
         (Which::Overlap, overlap::check),
+        (Which::Scale, scale::check),
+        (Which::Bounce, bounce::check),
     ];
     let mut outcomes = Vec::new();
     for (name, check) in checks {

@@ -122,7 +122,11 @@ impl<D: Dim> SoftBody<D> {
     /// [`SoftBody::weights`] returned for the point.
     pub(crate) fn velocity_of(&self, weights: &[(NodeId, f32)]) -> Vec3 {
         let share = |&(node, weight): &(NodeId, f32)| self.state.velocity[node] * weight;
-        weights.iter().map(share).sum::<Row>().xyz()
+        let velocity = weights.iter().map(share).sum::<Row>().xyz();
+        match self.responses().is_empty() {
+            true => velocity,
+            false => velocity + self.response_velocity(weights),
+        }
     }
 
     /// Maps a present position [m] to an offset [m] from the volume centroid of the undeformed element.

@@ -21,6 +21,9 @@ pub struct BodyProperties {
     pub least_strength: f32,
     /// Speed of the pressure wave in the material in which it is fastest [m/s].
     pub fastest_wave: f64,
+    /// Largest product of the angular frequency of the breathing mode of a voxel and the width of the voxel
+    /// [m/s].
+    pub fastest_breathing: f64,
 }
 
 impl BodyProperties {
@@ -46,6 +49,7 @@ impl BodyProperties {
         };
         let strengths = used().map(|(_, material)| material.strength);
         let waves = used().map(|(_, material)| material.wave_speed());
+        let breathing = used().map(|(_, material)| material.breathing_speed(D::N));
         let mut mass_damping = used().map(|(_, material)| material.damping.mass);
         let first = mass_damping.next();
         Self {
@@ -55,6 +59,7 @@ impl BodyProperties {
             rolling_resistance: mean(&|material| f64::from(material.rolling_resistance)) as f32,
             least_strength: strengths.fold(f32::INFINITY, f32::min),
             fastest_wave: waves.fold(0.0, f64::max),
+            fastest_breathing: breathing.fold(0.0, f64::max),
         }
     }
 }

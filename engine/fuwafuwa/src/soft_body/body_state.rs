@@ -43,6 +43,8 @@ pub struct State<D: Dim> {
     /// Whether the caller has moved nodes since forces were last computed, so that element rotations must be
     /// recomputed.
     pub placed: bool,
+    /// Whether the stiffness scale or the mass scale has changed since the last tick.
+    pub scale_changed: bool,
     /// Batches of elements. Snapshots contain only the rotation and plastic deformation of each element and
     /// the forces of the last substep. Each substep continues from the last rotations, and the last forces
     /// decide where the next crack runs.
@@ -52,7 +54,7 @@ pub struct State<D: Dim> {
 hash_state! {
     [D: Dim] struct State<D> {
         position, velocity, mass, inverse_mass, fixed, damage, cooldowns, ahead, gravity_scale, layers,
-        user_data, placed, batches,
+        user_data, placed, scale_changed, batches,
     }
 }
 
@@ -72,6 +74,7 @@ impl<D: Dim> State<D> {
             layers: Layers::default(),
             user_data: 0,
             placed: false,
+            scale_changed: false,
             batches,
         }
     }

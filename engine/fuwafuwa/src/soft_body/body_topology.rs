@@ -27,10 +27,13 @@ pub struct Topology<D: Dim> {
     pub materials: Vec<Material>,
     /// Factor by which the stiffness was lowered to keep the substep stable; 1 = unchanged.
     pub stiffness_scale: f64,
+    /// Factor on the inertia of deformation that keeps the substep stable; 1 = unchanged.
+    pub mass_scale: f64,
 }
 
 hash_state! {
     [D: Dim] struct Topology<D> {
         grid, connectivity, hierarchy, mesh, pieces, materials, stiffness_scale,
+        mass_scale,
     }
 }

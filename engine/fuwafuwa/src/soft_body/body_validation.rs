@@ -90,7 +90,9 @@ impl<D: Dim> Topology<D> {
         let number = usize::from(numbers.max().unwrap_or(0));
         let are_good = { self.materials.iter() }.all(|material| material.check().is_ok())
             && self.stiffness_scale > 0.0
-            && self.stiffness_scale <= 1.0;
+            && self.stiffness_scale <= 1.0
+            && self.mass_scale >= 1.0
+            && self.mass_scale.is_finite();
         ensure(number <= self.materials.len() && are_good, "materials")?;
         ensure(self.connectivity.is_valid(&self.grid), "groups")?;
         let grading = self.hierarchy.grading();

@@ -7,11 +7,13 @@ use crate::fracture::breakable_nodes::BreakableNodes;
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::fast_motion::Pace;
 use crate::soft_body::momentum::RigidMotionF32;
+use crate::soft_body::piece_response::PieceResponse;
 use crate::topology::changes::History;
 
 /// Data derived from the topology and the state of a body. Snapshots do not contain these data.
-/// `SoftBody::rebuild` recomputes them after loading, except the last five fields: `history` starts empty,
-/// each tick begins by setting `rigid`, `before` and `fastest`, and ends by clearing `paces`.
+/// `SoftBody::rebuild` recomputes them after loading, except the last six fields: `history` starts empty,
+/// each tick begins by setting `rigid`, `before` and `fastest`, and ends by clearing `paces`; each substep begins
+/// by setting `responses`.
 #[derive(Clone, Debug, Default)]
 pub struct Cache {
     /// Properties of the body, combined from its materials.
@@ -42,4 +44,6 @@ pub struct Cache {
     pub fastest: f32,
     /// Paces of the pieces; empty if the body is not fast.
     pub paces: Vec<Pace>,
+    /// Responses of the pieces in this substep; empty in a body without a mass scale.
+    pub responses: IndexVec<PieceId, PieceResponse>,
 }

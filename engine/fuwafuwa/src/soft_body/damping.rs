@@ -10,7 +10,7 @@ use crate::foundation::ids::{IndexVec, NodeId, PieceId};
 use crate::foundation::threads;
 use crate::math::row::Row;
 use crate::soft_body::SoftBody;
-use crate::soft_body::momentum::RigidMotion;
+use crate::soft_body::momentum::{RigidMotion, inverse};
 use glam::DVec3;
 
 /// Factor on the mass of fixed nodes in the rigid motion of a piece. A piece with fixed nodes thereby moves
@@ -90,6 +90,40 @@ impl PieceMotion {
         self.rigid_with(self.velocity * self.weight, self.angular)
     }
 
+    /// Mass [kg]; 0 for a sleeping piece.
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// Returns whether some nodes of the piece are fixed.
+    pub fn has_fixed_nodes(&self) -> bool {
+        self.weight > self.mass
+    }
+
+    /// Inverse inertia tensor about the centre of mass, by rows [1/kg m²].
+    pub fn inverse_inertia(&self) -> [DVec3; 3] {
+        inverse(self.inertia())
+    }
+
+    /// Inverse of the second moment of mass, by rows [1/kg m²]; in 2D, the row of the third axis is 0.
+    pub fn inverse_spread<D: Dim>(&self) -> [DVec3; 3] {
+        let mut spread = self.spread;
+        if D::N == 2 {
+            spread[2][2] = spread[0][0] + spread[1][1];
+        }
+        let mut inverse = inverse(spread);
+        inverse[D::N..].fill(DVec3::ZERO);
+        inverse
+    }
+
+    /// Inertia tensor about the centre of mass [kg m²].
+    fn inertia(&self) -> [DVec3; 3] {
+        let squared = self.spread[0][0] + self.spread[1][1] + self.spread[2][2];
+        let mut inertia = self.spread.map(|row| -row);
+        (0..3).for_each(|k| inertia[k][k] += squared);
+        inertia
+    }
+
     /// Returns the rigid motion that has a given linear momentum [kg m/s], and a given angular momentum about
     /// the centre of mass [kg m²/s]; zero for a sleeping piece.
     fn rigid_with(&self, linear: DVec3, angular: DVec3) -> RigidMotion {
@@ -97,10 +131,7 @@ impl PieceMotion {
             return RigidMotion::default();
         }
         let velocity = linear / self.weight;
-        let squared = self.spread[0][0] + self.spread[1][1] + self.spread[2][2];
-        let mut inertia = self.spread.map(|row| -row);
-        (0..3).for_each(|k| inertia[k][k] += squared);
-        RigidMotion::of_spin(velocity, self.centre, &angular, &inertia)
+        RigidMotion::of_spin(velocity, self.centre, &angular, &self.inertia())
     }
 }
 
@@ -246,6 +277,7 @@ fn damp_by_node<D: Dim>(
     rigid: &[RigidMotion],
     duration: f32,
 ) {
+    let slowdown = body.slowdown() as f32;
     let state = &mut body.state;
     let pieces = &body.topology.pieces;
     let mut taken = vec![(DVec3::ZERO, DVec3::ZERO); motions.len()];
@@ -255,7 +287,8 @@ fn damp_by_node<D: Dim>(
         let piece = pieces.of_node(id).index();
         let (position, velocity) = (state.position[id], &mut state.velocity[id]);
         let vibration = wide(*velocity) - rigid[piece].at(position);
-        let change = vibration * -f64::from(lost(body.cache.mass_damping[id], duration));
+        let rate = body.cache.mass_damping[id] / slowdown;
+        let change = vibration * -f64::from(lost(rate, duration));
         let impulse = change * f64::from(state.mass[id]);
         taken[piece].0 -= impulse;
         taken[piece].1 -= (wide(position) - motions[piece].centre).cross(impulse);

@@ -55,11 +55,12 @@ impl<D: Dim> SoftBody<D> {
         sum
     }
 
-    /// Inverse mass of a node [1/kg]; 0 while the node is fixed or sleeps.
+    /// Inverse mass of a node [1/kg] for the motion of the node alone, which the mass scale of the body makes
+    /// heavier; 0 while the node is fixed or sleeps.
     pub(super) fn inverse_mass_of(&self, id: NodeId) -> f32 {
         let free = !self.state.fixed[id] && !self.topology.pieces.sleeps(id);
         match free {
-            true => 1.0 / self.state.mass[id],
+            true => scaled_inverse(self.state.mass[id], self.topology.mass_scale),
             false => 0.0,
         }
     }
@@ -108,4 +109,9 @@ impl<D: Dim> SoftBody<D> {
         let breakable = &mut self.cache.breakable;
         breakable.update(nodes, grid, connectivity, mesh, materials);
     }
+}
+
+/// Returns 1 / (`mass` · `mass_scale`) [1/kg].
+pub(super) fn scaled_inverse(mass: f32, mass_scale: f64) -> f32 {
+    (1.0 / (f64::from(mass) * mass_scale)) as f32
 }

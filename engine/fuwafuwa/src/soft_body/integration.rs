@@ -38,6 +38,7 @@ impl<D: Dim> SoftBody<D> {
         self.state
             .batches
             .update_velocities(&update, &mut self.state.velocity);
+        self.complete_forces(duration, gravity);
         for (id, before) in before {
             let share = self.pace_share(self.topology.pieces.of_node(id));
             let velocity = &mut self.state.velocity[id];
@@ -72,6 +73,10 @@ impl<D: Dim> SoftBody<D> {
 
     /// Adds to velocities the change that an acceleration field [m/s²] causes in `duration` [s].
     pub(crate) fn apply_field(&mut self, duration: f32, field: &dyn Fn(D::Vector) -> D::Vector) {
+        if self.topology.mass_scale > 1.0 {
+            self.apply_field_to_scaled(duration, field);
+            return;
+        }
         for &id in &self.cache.awake {
             let duration = duration * self.pace_share(self.topology.pieces.of_node(id));
             let point = D::Vector::from_vec3(self.state.position[id].xyz());
@@ -82,6 +87,22 @@ impl<D: Dim> SoftBody<D> {
                 }
             }
         }
+    }
+
+    /// Like [`SoftBody::apply_field`], in a body with a mass scale.
+    fn apply_field_to_scaled(&mut self, duration: f32, field: &dyn Fn(D::Vector) -> D::Vector) {
+        for index in 0..self.cache.awake.len() {
+            let id = self.cache.awake[index];
+            let duration = duration * self.pace_share(self.topology.pieces.of_node(id));
+            let point = D::Vector::from_vec3(self.state.position[id].xyz());
+            let acceleration = field(point).to_vec3();
+            if self.state.inverse_mass[id] > 0.0 && acceleration.is_finite() {
+                let impulse = acceleration * (duration * self.state.mass[id]);
+                self.state.velocity[id] += Row::from(impulse * self.state.inverse_mass[id]);
+                self.push_responses(&[(id, 1.0)], impulse);
+            }
+        }
+        self.apply_responses();
     }
 
     /// Recomputes the rotations of elements that are new or whose nodes were placed, because such a rotation

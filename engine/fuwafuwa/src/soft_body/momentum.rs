@@ -157,6 +157,14 @@ pub fn centre_of(points: impl Iterator<Item = (Row, f32)>) -> DVec3 {
     sum / total
 }
 
+/// Returns the inverse of a symmetric positive definite matrix, by rows. Adds a little to the matrix, so that the
+/// moments of collinear points can be inverted.
+pub(super) fn inverse(mut m: [DVec3; 3]) -> [DVec3; 3] {
+    let little = 1e-6 * (m[0][0] + m[1][1] + m[2][2]) + f64::MIN_POSITIVE;
+    (0..3).for_each(|k| m[k][k] += little);
+    DVec3::AXES.map(|axis| solved(&m, axis))
+}
+
 /// Solves m x = b for a symmetric positive definite matrix m by its adjugate; returns 0 if m is singular.
 fn solved(m: &[DVec3; 3], b: DVec3) -> DVec3 {
     let columns = [m[1].cross(m[2]), m[2].cross(m[0]), m[0].cross(m[1])];

@@ -268,7 +268,8 @@ impl<D: Dim> SoftBody<D> {
     /// Distributes an impulse [N s] over the nodes within `radius` [m] of the point `at`, in proportion to
     /// their mass, so that these nodes all gain the same velocity. If the radius contains no node, the
     /// nearest node receives the whole impulse. Fixed and sleeping nodes are skipped.
-    pub(crate) fn add_impulse(&mut self, at: Vec3, radius: f32, impulse: Vec3) {
+    /// The response of the pieces as a whole is that of substeps of `duration` [s].
+    pub(crate) fn add_impulse(&mut self, at: Vec3, radius: f32, impulse: Vec3, duration: f32) {
         let nodes = self.topology.mesh.nodes().map(|(id, _)| id);
         let free = nodes.filter(|&id| self.state.inverse_mass[id] > 0.0);
         let at = flat::<D>(at);
@@ -284,8 +285,17 @@ impl<D: Dim> SoftBody<D> {
             reached.extend(nearest.map(|&(id, _)| id));
         }
         let mass: f32 = reached.iter().map(|&id| self.state.mass[id]).sum();
-        for id in reached {
-            add::<D>(&mut self.state.velocity[id], impulse / mass);
+        let own = impulse / self.topology.mass_scale as f32;
+        for &id in &reached {
+            add::<D>(&mut self.state.velocity[id], own / mass);
+        }
+        if self.topology.mass_scale > 1.0 {
+            let weight = |&id: &NodeId| (id, self.state.mass[id] / mass);
+            let weights: Vec<(NodeId, f32)> = reached.iter().map(weight).collect();
+            self.refresh_awake();
+            self.measure_responses(duration);
+            self.push_responses(&weights, flat::<D>(impulse));
+            self.apply_responses();
         }
     }
 }

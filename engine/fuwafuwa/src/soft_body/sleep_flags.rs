@@ -1,6 +1,7 @@
 //! Sleeping, waking and quarantine of pieces.
 
 use super::SoftBody;
+use super::derived_caches::scaled_inverse;
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::{IndexVec, NodeId, PieceId};
 use crate::soft_body::element_forces::Row;
@@ -23,7 +24,7 @@ impl<D: Dim> SoftBody<D> {
                 }
                 let free = !asleep && !self.state.fixed[node];
                 self.state.inverse_mass[node] = if free {
-                    1.0 / self.state.mass[node]
+                    scaled_inverse(self.state.mass[node], self.topology.mass_scale)
                 } else {
                     0.0
                 };

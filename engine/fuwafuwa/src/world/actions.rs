@@ -263,8 +263,9 @@ impl<D: Dim> World<D> {
         match body {
             BodyHandle::Soft(body) => {
                 self.wake_soft(body)?;
+                let substep = self.config.tick / self.substeps() as f32;
                 let body = self.bodies.get_mut(body)?;
-                body.add_impulse(point, radius, impulse);
+                body.add_impulse(point, radius, impulse, substep);
             }
             BodyHandle::Rigid(rigid) => {
                 let rigid = self.dynamic_mut(rigid)?;
@@ -473,7 +474,7 @@ impl<D: Dim> World<D> {
     }
 
     /// Changes the configuration of the world from the next tick on. All pieces and rigid bodies wake. Bodies
-    /// are softened or stiffened for the new maximum number of substeps, see [`SoftBody::stiffness_scale`].
+    /// are scaled for the new maximum number of substeps, see [`WorldConfig::stiff_bodies`].
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] if a parameter is out of range. The world then stays unchanged.
@@ -481,10 +482,9 @@ impl<D: Dim> World<D> {
     pub fn set_config(&mut self, config: WorldConfig<D>) -> Result<(), Error> {
         config.check()?;
         self.config = config;
-        let shortest = config.shortest_substep();
         let mut all: Vec<Hit> = Vec::new();
         for (slot, body) in self.bodies.by_slot_mut() {
-            body.scale_stiffness_for(shortest);
+            body.scale_for(&config);
             let pieces = body.pieces().list.ids();
             all.extend(pieces.map(|piece| (slot, piece)));
         }

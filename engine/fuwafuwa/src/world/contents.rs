@@ -17,8 +17,8 @@ use crate::soft_body::rayleigh::Damping;
 use std::ops::Index;
 
 impl<D: Dim> World<D> {
-    /// Adds a soft body. A body that is too stiff for the maximum number of substeps is softened, see
-    /// [`SoftBody::stiffness_scale`]. A body inside another object is pushed out of it, see
+    /// Adds a soft body. [`WorldConfig::stiff_bodies`] says what happens to a body that requires more than the
+    /// maximum number of substeps. A body inside another object is pushed out of it, see
     /// [`Event::Overlapped`].
     ///
     /// # Errors
@@ -26,7 +26,7 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub fn add_soft_body(&mut self, mut body: SoftBody<D>) -> Result<SoftBodyHandle, Error> {
         body.check_range(|at| at)?;
-        body.scale_stiffness_for(self.config.shortest_substep());
+        body.scale_for(&self.config);
         let id = self.bodies.insert(body);
         // The body may have fallen asleep in another world.
         self.wake_body(id);
@@ -35,11 +35,14 @@ impl<D: Dim> World<D> {
     }
 
     /// Returns the Rayleigh damping that acts in a soft body, for each of its materials: that of the material,
-    /// with the stiffness damping limited to the largest that the substep allows.
+    /// with the stiffness damping limited to the largest that the substep allows. A
+    /// [mass scale](SoftBody::mass_scale) s makes vibrations √s times slower. Their damping ratio stays the same:
+    /// the mass damping is divided by √s, and the stiffness damping multiplied. At least a tenth of a substep of
+    /// stiffness damping then acts.
     ///
     /// The limit is 0.7 (4/Ω² − h²) / 2h, with the substep h = tick / [`substeps`](World::substeps) and the
     /// angular frequency Ω of the breathing mode of a single voxel. In N dimensions, Ω² = 4 (N λ + 2µ) / ρs²,
-    /// with Lamé's parameters λ and µ, the density ρ and the voxel size s. More substeps, larger voxels or a
+    /// divided by the mass scale, with Lamé's parameters λ and µ, the density ρ and the voxel size s. More substeps, larger voxels or a
     /// softer material raise the limit.
     ///
     /// # Errors

@@ -440,8 +440,12 @@ impl<D: Dim> World<D> {
                     for node in free {
                         let share = force * (body.masses()[node] / mass);
                         sum.add(share, body.positions()[node].xyz());
-                        body.velocities_mut()[node] += Row::from(force * (duration / mass));
+                        let (impulse, inverse_mass) =
+                            (share * duration, body.inverse_masses()[node]);
+                        body.velocities_mut()[node] += Row::from(impulse * inverse_mass);
+                        body.push_responses(&[(node, 1.0)], impulse);
                     }
+                    body.apply_responses();
                 }
                 Drive::Still | Drive::Carried(_) => {
                     let least = WAKE_DISTANCE * body.grid().voxel_size();

@@ -76,6 +76,7 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
         gravity: settings.gravity.to_vec3().to_array(),
         drag: settings.drag,
         max_substeps: settings.max_substeps,
+        stiff_bodies: Some(settings.stiff_bodies),
         tick: settings.tick,
         sleep: settings.sleep,
         seconds: super::usual_seconds(),

@@ -135,7 +135,7 @@ impl AttachedAnchor {
                 let share = 1.0 / nodes.len() as f32;
                 let (mut at, mut velocity, mut mean_inverse_mass) = (Vec3::ZERO, Vec3::ZERO, 0.0);
                 let mut is_asleep = true;
-                for node in nodes {
+                for &node in &nodes {
                     at += body.positions()[node].xyz() * share;
                     velocity += body.velocities()[node].xyz() * share;
                     mean_inverse_mass += body.inverse_masses()[node] * share * share;
@@ -143,6 +143,12 @@ impl AttachedAnchor {
                 }
                 let mut inverse_mass = [Vec3::ZERO; 3];
                 (0..D::N).for_each(|axis| inverse_mass[axis][axis] = mean_inverse_mass);
+                if !body.responses().is_empty() {
+                    let weights: Vec<_> = nodes.iter().map(|&node| (node, share)).collect();
+                    velocity += body.response_velocity(&weights);
+                    let whole = body.response_matrix(&weights);
+                    (0..3).for_each(|row| inverse_mass[row] += whole[row]);
+                }
                 Some(AnchorState {
                     at,
                     velocity,
@@ -174,9 +180,10 @@ impl AttachedAnchor {
                 };
                 let nodes: Vec<NodeId> = nodes(body, corners).collect();
                 let share = Row::from(impulse * (1.0 / nodes.len() as f32));
-                for node in nodes {
+                for &node in &nodes {
                     let change = share * body.inverse_masses()[node];
                     body.velocities_mut()[node] += change;
+                    body.push_responses(&[(node, 1.0)], share.xyz());
                 }
             }
         }

@@ -31,6 +31,9 @@ pub struct Contact {
     pub min_normal_velocity: f32,
     /// Effective mass along the normal [kg].
     pub effective_mass: f32,
+    /// Effective mass for friction [kg]: at most that of any tangent direction. It differs from
+    /// `effective_mass` for sides that turn.
+    pub tangent_mass: f32,
     /// Coulomb friction coefficient.
     pub friction: f32,
     /// Accumulated impulse along the normal in this substep [N s], at least 0.
@@ -54,6 +57,7 @@ impl Contact {
             gap,
             min_normal_velocity: least,
             effective_mass,
+            tangent_mass: effective_mass,
             friction,
             normal_impulse: 0.0,
             friction_impulse: Row::ZERO,
@@ -75,6 +79,15 @@ impl Contact {
         self
     }
 
+    /// Returns the contact with an own effective mass for friction [kg].
+    #[inline(always)]
+    pub fn with_tangent_mass(self, tangent_mass: f32) -> Self {
+        Self {
+            tangent_mass,
+            ..self
+        }
+    }
+
     /// Returns whether the contact can be skipped in this iteration: it has no normal impulse and requires
     /// none at this relative velocity. This is true for most contacts that do not touch yet.
     #[inline(always)]
@@ -91,19 +104,12 @@ impl Contact {
     /// [m/s].
     #[inline(always)]
     pub fn solve<D: Dim>(&mut self, relative: Row) -> Row {
-        self.solve_with_tangent_mass::<D>(relative, self.effective_mass)
-    }
-
-    /// Like [`Contact::solve`], with a separate tangential effective mass `tangent_mass` [kg] for sides that
-    /// rotate.
-    #[inline(always)]
-    pub fn solve_with_tangent_mass<D: Dim>(&mut self, relative: Row, tangent_mass: f32) -> Row {
         let approach = inner::<D>(relative, self.normal);
         let normal_impulse = (self.normal_impulse
             + (self.min_normal_velocity - approach) * self.effective_mass)
             .max(0.0);
         let slip = relative - self.normal * approach;
-        let mut friction_impulse = self.friction_impulse - slip * tangent_mass;
+        let mut friction_impulse = self.friction_impulse - slip * self.tangent_mass;
         let (held, wanted) = (
             self.friction * normal_impulse,
             inner::<D>(friction_impulse, friction_impulse),

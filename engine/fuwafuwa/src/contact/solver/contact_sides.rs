@@ -37,8 +37,6 @@ pub struct DynamicContact {
     pub both: [RigidSlot; 2],
     /// Lever arms from the position of each body to the contact point [m].
     pub levers: [Vec3; 2],
-    /// Tangential effective mass [kg]: at most that of any tangent direction.
-    pub tangent_mass: f32,
     /// Position of the point [m].
     pub at: Vec3,
     /// Approach speed at the point [m/s].

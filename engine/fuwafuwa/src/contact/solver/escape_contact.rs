@@ -3,6 +3,7 @@
 
 use super::contact_row::PUSH_OUT_SPEED;
 use super::contact_sides::SphereNodeRows;
+use super::scaled_pieces::inverse_masses_of_spheres;
 use super::solver_velocities::SolverVelocities;
 use crate::contact::broad_phase::{EmbeddedSphere, Spheres};
 use crate::foundation::dim::{Dim, inner};
@@ -39,7 +40,9 @@ impl EscapeContact {
         let way = goal - spheres.centres[a];
         let speed = PUSH_OUT_SPEED.min(length_of(way) / duration);
         let [first, second] = both.map(|sphere| sphere.inverse_mass(bodies));
-        let inverse_mass = first + second;
+        let centres = [a, b].map(|sphere| spheres.centres[sphere]);
+        let (_, whole) = inverse_masses_of_spheres(bodies, both, centres, Row::ZERO);
+        let inverse_mass = first + second + whole;
         // Skips an embedded sphere that is too fast, because it would accelerate its host piece. The
         // comparisons are false for NaN.
         let relative = spheres.velocities[a] - spheres.velocities[b];

@@ -151,6 +151,7 @@ fn touch<D: Dim>(
             1.0 / normal_inverse_mass,
             friction,
         );
+        contact = contact.with_tangent_mass(1.0 / tangent_inverse_mass);
         contact = contact.with_warm_start::<D>(0, &impulse);
         let is_new = impulse.normal_impulse == 0.0 && approach < -BOUNCE_SPEED;
         let bounce = if is_new { -restitution * approach } else { 0.0 };
@@ -161,7 +162,6 @@ fn touch<D: Dim>(
             contact,
             both: slots,
             levers,
-            tangent_mass: 1.0 / tangent_inverse_mass,
             at: point.at,
             speed: -approach,
             bounce,
@@ -211,9 +211,7 @@ impl DynamicContact {
 
     pub fn solve<D: Dim>(&mut self, rigids: &mut RigidBodies, duration: f32) {
         let relative = self.relative(rigids);
-        let change = self
-            .contact
-            .solve_with_tangent_mass::<D>(relative, self.tangent_mass);
+        let change = self.contact.solve::<D>(relative);
         self.push(rigids, change, duration);
     }
 

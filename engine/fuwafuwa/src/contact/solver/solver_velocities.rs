@@ -1,6 +1,7 @@
 //! Contiguous node velocities for the contact solver.
 
 use super::contact_sides::{NodeContact, NodeRow, SphereNodeRows};
+use super::scaled_pieces::ScaledPieces;
 use crate::contact::broad_phase::{ContactSphere, mean};
 use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
@@ -25,6 +26,8 @@ pub struct SolverVelocities {
     /// For each chunk, whether any of its nodes is in contact. All other chunks, which are most chunks of a
     /// large body, are not copied.
     is_touched: Vec<bool>,
+    /// Pieces with scaled mass, whose nodes also move with the piece as a whole.
+    pub scaled: ScaledPieces,
 }
 
 impl SolverVelocities {
@@ -79,6 +82,7 @@ impl SolverVelocities {
                 }
             }
         }
+        self.scaled.load(bodies, &self.first, self.rows.len());
     }
 
     /// Copies the velocities of nodes in contact back to the bodies.
@@ -94,6 +98,7 @@ impl SolverVelocities {
                 }
             }
         }
+        self.scaled.store(bodies);
     }
 
     /// Returns the velocity of the first sphere relative to the second [m/s].
@@ -102,7 +107,11 @@ impl SolverVelocities {
         let [first, second] = spheres
             .each_ref()
             .map(|rows| mean::<D, _>(&self.rows, rows));
-        with_fourth(first - second, 0.0)
+        let relative = with_fourth(first - second, 0.0);
+        match self.scaled.is_empty() {
+            true => relative,
+            false => relative + self.scaled.relative_of_spheres::<D>(spheres),
+        }
     }
 
     /// Applies an impulse to the first sphere and its opposite to the second.
@@ -115,19 +124,27 @@ impl SolverVelocities {
                 *row += share * row[3];
             }
         }
+        if !self.scaled.is_empty() {
+            self.scaled
+                .push_spheres::<D>(spheres, with_fourth(impulse, 0.0));
+        }
     }
 
     /// Returns the velocity of a node relative to the rigid body that it touches [m/s].
     #[inline(always)]
-    pub fn relative_of_node(&self, row: &NodeContact, rigids: &RigidBodies) -> Row {
+    pub fn relative_of_node<D: Dim>(&self, row: &NodeContact, rigids: &RigidBodies) -> Row {
         let own = self.rows[row.node];
         let other = row.mover.map_or(Row::ZERO, |mover| velocity(mover, rigids));
-        with_fourth(own - other, 0.0)
+        let relative = with_fourth(own - other, 0.0);
+        match self.scaled.is_empty() {
+            true => relative,
+            false => relative + self.scaled.velocity_of_node::<D>(row.node),
+        }
     }
 
     /// Applies an impulse to a node and its opposite to a moving rigid body.
     #[inline(always)]
-    pub fn apply_to_node(
+    pub fn apply_to_node<D: Dim>(
         &mut self,
         row: &NodeContact,
         rigids: &mut RigidBodies,
@@ -136,6 +153,10 @@ impl SolverVelocities {
     ) {
         let own = &mut self.rows[row.node];
         *own += impulse * own[3];
+        if !self.scaled.is_empty() {
+            self.scaled
+                .push_node::<D>(row.node, with_fourth(impulse, 0.0));
+        }
         if let Some(mover) = row.mover {
             push(mover, rigids, -impulse, duration);
         }

@@ -23,8 +23,8 @@ struct EdgeRow {
     body: SoftBodyHandle,
     /// Nodes of the element around the sample, with their interpolation weights.
     weights: Vec<(NodeId, f32)>,
-    /// Inverse effective mass of the tissue at the sample [1/kg].
-    inverse_mass: f32,
+    /// Inverse effective mass of the tissue at the sample [1/kg], in the cutting direction and sideways.
+    inverse_mass: [f32; 2],
     /// Lever arm from the position of the holder to the sample [m].
     lever: Vec3,
     /// Maximum impulses in the substep: in the cutting direction, and sideways in both senses [N s].
@@ -125,9 +125,11 @@ impl KnifeState {
         let inverse_masses = weights
             .iter()
             .map(|&(node, weight)| weight * weight * body.inverse_masses()[node]);
+        let (own, whole): (f32, _) = (inverse_masses.sum(), body.response_matrix(&weights));
+        let inverse_mass = |way: Vec3| own + way.dot(whole.map(|row| row.dot(way)).into());
         EdgeRow {
             body: id,
-            inverse_mass: inverse_masses.sum(),
+            inverse_mass: [pose.toward, pose.across].map(inverse_mass),
             weights,
             lever: self.lever(pose, place),
             // A sample that represents no length, in unbreakable material, gives 0 · ∞ = NaN, which `max`
@@ -163,7 +165,7 @@ fn solve_row<D: Dim>(
     for (way, direction) in ways.into_iter().enumerate() {
         // If neither the tissue nor the holder can move, the division by 0 drives the impulse to its limit.
         let total_inverse_mass =
-            row.inverse_mass + holder.inverse_effective_mass(row.lever, direction);
+            row.inverse_mass[way] + holder.inverse_effective_mass(row.lever, direction);
         let speed = slip(row, body, holder).dot(direction);
         let least = if way == 0 { 0.0 } else { -row.limits[way] };
         let wanted = (row.impulse[way] + speed / total_inverse_mass).clamp(least, row.limits[way]);
@@ -177,6 +179,7 @@ fn solve_row<D: Dim>(
             let change = Row::from(push) * (weight * body.inverse_masses()[node]);
             body.velocities_mut()[node] += change;
         }
+        body.push_responses(&row.weights, push);
         holder.apply_contact_impulse_at(-push, row.lever, duration);
     }
 }
