@@ -120,7 +120,8 @@ pub mod prelude {
     };
     pub use crate::message::{
         ContactEnded, ContactForce, ContactStarted, Cut, FellAsleep, JointBroke, LeftRange,
-        NodeSplit, Overlapped, PieceDetached, Rejection, Removed, SensorEntered, SensorExited, WokeUp,
+        NodeSplit, Overlapped, PieceDetached, Rejection, Removed, SensorEntered, SensorExited,
+        WokeUp,
     };
     pub use crate::{
         FuwafuwaPlugin, FuwafuwaPlugin2d, FuwafuwaPlugin3d, FuwafuwaSystems, Rejected, RigidBody2d,

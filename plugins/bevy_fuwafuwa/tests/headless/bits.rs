@@ -44,10 +44,12 @@ fn app_has_the_hash_of_the_engine() -> Result<(), Box<dyn std::error::Error>> {
     world.add_rigid_body(RigidBody::fixed(floor).with_friction(0.5))?;
     for (across, x, y) in BALLS {
         let body = Body::new(VoxelGrid::ball(across, 1.0)?, &[SoftMaterial::default()])?;
-        world.add_soft_body(
-            body.translated(Vec2::splat(-0.5))
-                .translated(Vec2::new(x, y)),
-        ).unwrap();
+        world
+            .add_soft_body(
+                body.translated(Vec2::splat(-0.5))
+                    .translated(Vec2::new(x, y)),
+            )
+            .unwrap();
     }
     let hand = RigidBody::kinematic(Shape::ball(0.15)).at(engine_vector(hand_at(0)));
     let hand = world.add_rigid_body(hand)?;

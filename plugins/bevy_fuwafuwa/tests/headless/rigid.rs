@@ -333,7 +333,9 @@ fn hash_of_engine<D: Dimension>() -> Result<u64, Box<dyn std::error::Error>> {
     }
     let body = Body::new(VoxelGrid::ball(8, 1.0)?, &[SoftMaterial::default()])?;
     let body = body.translated(D::Vector::splat(-0.5));
-    world.add_soft_body(body.translated(engine_vector(Vec3::new(1.0, 0.7, 0.0)))).unwrap();
+    world
+        .add_soft_body(body.translated(engine_vector(Vec3::new(1.0, 0.7, 0.0))))
+        .unwrap();
     for tick in 0..TICKS {
         world.set_target_rotation(table, engine_rotation(table_at(tick)))?;
         world.step();
