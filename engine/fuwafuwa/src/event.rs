@@ -127,7 +127,8 @@ pub enum Event<D: Dim> {
     },
     /// An object moved out of the range in which single precision is enough. A piece is simulated further, but
     /// its shape gets coarser; see [`SoftBody::range`](crate::SoftBody::range). A rigid body stops at its
-    /// position at the start of the tick, within 10⁶ m of the origin. Sent once each time an object leaves.
+    /// position at the start of the tick, within 10⁶ m of the origin. The same happens if its
+    /// velocity becomes non-finite. Sent once each time an object leaves.
     LeftRange {
         /// The piece or rigid body.
         object: ObjectRef,

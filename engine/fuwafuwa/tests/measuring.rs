@@ -3,8 +3,8 @@
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
     Damping, Dim, Dim2, Dim3, DimAngular, DimVector, Event, Grip, Joint, JointAnchor, Material,
-    NodeId, ObjectRef, ObjectSelector, RigidBody, Shape, SoftBody, SoftBodyHandle, Vec3, VoxelGrid,
-    World, WorldConfig,
+    MotionType, NodeId, ObjectRef, ObjectSelector, RigidBody, Shape, SoftBody, SoftBodyHandle,
+    Vec2, Vec3, VoxelGrid, World, WorldConfig,
 };
 
 const GRAVITY: f32 = 9.81;
@@ -588,4 +588,66 @@ fn stiff_bar_is_pulled<D: Dim>() {
 fn grip_force_stretches_bar_of_scaled_mass() {
     stiff_bar_is_pulled::<Dim2>();
     stiff_bar_is_pulled::<Dim3>();
+}
+
+/// Two grips of which the lattice boxes overlap keep their own nodes, and a node that was fixed before stays fixed.
+#[test]
+fn grips_leave_foreign_nodes_alone() {
+    let mut world = weightless::<Dim2>();
+    let body = world.add_soft_body(bar::<Dim2>(4e5)).unwrap();
+    let fixed = world[body].nodes_in(&Shape::ball(0.01)).next().unwrap();
+    world.soft_body_mut(body).unwrap().fix_node(fixed);
+    let near = |x: f32| Shape::ball(0.12).translated(vector::<Dim2>(x, 0.1, 0.0));
+    let grips = [0.3, 0.45].map(|x| world.add_grip(Grip::still(body, near(x))).unwrap());
+    let counts = |world: &World<Dim2>| grips.map(|grip| world.grip(grip).unwrap().node_count());
+    let before = counts(&world);
+    (0..5).for_each(|_| _ = world.step());
+    assert_eq!(counts(&world), before);
+    let shared = world[body].nodes_in(&near(0.3));
+    let shared: Vec<NodeId> = shared.filter(|&id| world[body].is_fixed(id)).collect();
+    world.remove(grips[1]).unwrap();
+    assert!(shared.iter().all(|&id| world[body].is_fixed(id)));
+    world.remove(grips[0]).unwrap();
+    assert!(shared.iter().all(|&id| !world[body].is_fixed(id)));
+    assert!(world[body].is_fixed(fixed));
+}
+
+/// A body that carries a grip stays fixed or kinematic.
+#[test]
+fn carrier_of_grip_cannot_become_dynamic() {
+    let mut world = weightless::<Dim2>();
+    let body = world.add_soft_body(bar::<Dim2>(4e5)).unwrap();
+    let clamp = RigidBody::kinematic(Shape::ball(0.01)).with_sensor(true);
+    let clamp = world.add_rigid_body(clamp).unwrap();
+    let left = Shape::half_space(Vec2::X, Vec2::X * 0.01);
+    world.add_grip(Grip::carried(body, left, clamp)).unwrap();
+    let refused = world.set_motion_type(clamp, MotionType::Dynamic { mass: 1.0 });
+    assert!(refused.unwrap_err().to_string().contains("carries a grip"));
+    world.set_motion_type(clamp, MotionType::Fixed).unwrap();
+}
+
+/// A clamped bar with so much damping that it creeps falls asleep only where it would come to rest.
+#[test]
+fn creeping_cantilever_sleeps_at_its_full_deflection() {
+    let deflection = |sleep: bool| {
+        let mut world = World::<Dim2>::new(WorldConfig {
+            sleep,
+            ..WorldConfig::default()
+        })
+        .unwrap();
+        let mut material = rubber(2e4);
+        material.damping.mass = 60.0;
+        let grid = VoxelGrid::from_fn([16, 2, 1], 0.05, |_| 1).unwrap();
+        let bar = SoftBody::new(grid, &[material]).unwrap();
+        let bar = world.add_soft_body(bar).unwrap();
+        let left = Shape::half_space(Vec2::X, Vec2::X * 0.01);
+        world.add_grip(Grip::still(bar, left)).unwrap();
+        (0..3000).for_each(|_| _ = world.step());
+        world[bar].centre_of_mass().y - 0.05
+    };
+    let (slept, whole) = (deflection(true), deflection(false));
+    assert!(
+        whole < -0.02 && (slept / whole - 1.0).abs() < 0.05,
+        "{slept} {whole}"
+    );
 }

@@ -18,8 +18,8 @@ use glam::DVec3;
 /// motion of their own; a thousand times this factor would exceed the precision of the sums.
 const FIXED_WEIGHT: f64 = 1e9;
 
-/// Motion of one piece, with the moments of its mass; all 0 for a sleeping piece. In all fields but `mass`
-/// and `speed_squared`, the mass of fixed nodes is multiplied by [`FIXED_WEIGHT`].
+/// Motion of one piece, with the moments of its mass; all 0 for a sleeping piece. In `weight`, `centre`,
+/// `velocity`, `angular` and `spread`, the mass of fixed nodes is multiplied by [`FIXED_WEIGHT`].
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct PieceMotion {
     /// Mass [kg].
@@ -27,6 +27,8 @@ pub struct PieceMotion {
     /// Mass with that of fixed nodes multiplied [kg].
     weight: f64,
     /// Centre of mass [m].
+    pub mass_centre: DVec3,
+    /// Centre of the masses of which those of fixed nodes are multiplied [m].
     pub centre: DVec3,
     /// Velocity of the centre of mass [m/s].
     velocity: DVec3,
@@ -59,6 +61,7 @@ impl PieceMotion {
             _ => self.angular += x.cross(impulse),
         }
         for i in 0..D::N {
+            self.mass_centre[i] += x[i] * mass;
             self.centre[i] += moment[i];
             self.velocity[i] += impulse[i];
             for j in i..D::N {
@@ -82,6 +85,12 @@ impl PieceMotion {
             }
         }
         self.centre = origin + from;
+        self.mass_centre = origin + self.mass_centre / self.mass;
+    }
+
+    /// Returns whether the piece has fixed nodes.
+    pub fn is_clamped(&self) -> bool {
+        self.weight > self.mass
     }
 
     /// Returns the rigid motion that has the linear and angular momentum of the piece; zero for a sleeping

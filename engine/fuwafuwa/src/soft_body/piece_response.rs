@@ -188,8 +188,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Completes the velocity changes of a substep of `duration` [s] in a body with a mass scale: adds the
-    /// affine response to the elastic forces, and takes back what pieces with fixed nodes have too much of the
-    /// `gravity` [m/s²].
+    /// affine response to the elastic forces, and reduces `gravity` [m/s²] to 1/s in pieces with fixed nodes.
     pub(super) fn complete_forces(&mut self, duration: f32, gravity: Row) {
         self.measure_responses(duration);
         if self.cache.responses.is_empty() {

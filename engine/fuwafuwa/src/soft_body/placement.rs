@@ -268,7 +268,7 @@ impl<D: Dim> SoftBody<D> {
     /// Distributes an impulse [N s] over the nodes within `radius` [m] of the point `at`, in proportion to
     /// their mass, so that these nodes all gain the same velocity. If the radius contains no node, the
     /// nearest node receives the whole impulse. Fixed and sleeping nodes are skipped.
-    /// The response of the pieces as a whole is that of substeps of `duration` [s].
+    /// `duration` is the substep [s] for which a body with a mass scale responds.
     pub(crate) fn add_impulse(&mut self, at: Vec3, radius: f32, impulse: Vec3, duration: f32) {
         let nodes = self.topology.mesh.nodes().map(|(id, _)| id);
         let free = nodes.filter(|&id| self.state.inverse_mass[id] > 0.0);

@@ -172,7 +172,7 @@ impl<D: Dim> SoftBody<D> {
         let mut acting = self.acting_damping(duration);
         materials.any(|(material, used)| {
             let acting = acting.next().expect("every material has a damping");
-            *used && acting != material.damping.slowed(slowdown)
+            *used && acting.stiffness < material.damping.slowed(slowdown).stiffness
         })
     }
 
@@ -214,7 +214,9 @@ impl<D: Dim> SoftBody<D> {
         let capacity = self.topology.mesh.node_capacity();
         self.cache.mass_damping.resize(capacity, 0.0);
         for &id in nodes {
-            let rate = |material: &Material| f64::from(material.density * material.damping.mass);
+            let rate = |material: &Material| {
+                f64::from(material.density) * f64::from(material.damping.mass)
+            };
             let damped = self.sum_over_carriers(id, &rate);
             self.cache.mass_damping[id] = (damped / f64::from(self.state.mass[id])) as f32;
         }

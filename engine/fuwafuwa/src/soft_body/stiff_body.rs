@@ -31,12 +31,19 @@ impl<D: Dim> SoftBody<D> {
         self.topology.stiffness_scale
     }
 
-    /// Factor s by which the inertia of all deformation was raised to keep the substep stable; 1 = unchanged.
-    /// It acts under [`StiffBodies::MassScaled`](crate::StiffBodies::MassScaled). Vibrations are √s times
-    /// slower and have the same damping ratio; masses, momentum and
-    /// [kinetic energy](SoftBody::kinetic_energy) are those of the true mass.
+    /// Factor s by which the inertia of deformation was raised to keep the substep stable; 1 = unchanged. It acts
+    /// under [`StiffBodies::MassScaled`](crate::StiffBodies::MassScaled). Vibrations are √s times slower and have
+    /// the same damping ratio; only uniform stretching is less slow, with a lower ratio of mass damping and a
+    /// higher one of stiffness damping. Masses, momentum and [kinetic energy](SoftBody::kinetic_energy) are those
+    /// of the true mass.
     pub fn mass_scale(&self) -> f64 {
         self.topology.mass_scale
+    }
+
+    /// Notes that the scale of the body is new to its world, if the body has one.
+    pub(crate) fn announce_scale(&mut self) {
+        let topology = &self.topology;
+        self.state.scale_changed |= (topology.stiffness_scale, topology.mass_scale) != (1.0, 1.0);
     }
 
     /// Scales the stiffness or the mass of the body by the smallest factor at which the shortest substep of a

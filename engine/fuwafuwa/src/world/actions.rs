@@ -295,7 +295,7 @@ impl<D: Dim> World<D> {
     /// # Errors
     /// [`Error`] if the handle is stale, or a parameter of the motion type is out of range. A dynamic type is an
     /// error if the shape is unbounded or not centred on its origin. A fixed or dynamic type is an error if the
-    /// body holds a knife.
+    /// body holds a knife, and a dynamic or coupled one if it carries a [grip](crate::Grip).
     #[inline(never)]
     pub fn set_motion_type(
         &mut self,
@@ -306,6 +306,10 @@ impl<D: Dim> World<D> {
         let expected = "kinematic or coupled, because the body holds a knife";
         let is_allowed = !holds_knife || motion_type.follows_target();
         require(is_allowed, "motion_type", expected, motion_type)?;
+        let carries = { self.grips.iter() }.any(|grip| grip.carrier() == Some(rigid));
+        let expected = "fixed or kinematic, because the body carries a grip";
+        let is_carrier = matches!(motion_type, MotionType::Fixed | MotionType::Kinematic);
+        require(!carries || is_carrier, "motion_type", expected, motion_type)?;
         self.change_rigid(rigid, |body| body.set_motion_type::<D>(motion_type))
     }
 

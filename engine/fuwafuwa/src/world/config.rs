@@ -31,7 +31,7 @@ const ROUNDS: f64 = 240.0;
 pub const MAX_EXACT_SUBSTEPS: u32 = 65_536;
 
 /// Treatment of soft bodies that require more substeps than [`WorldConfig::max_substeps`]: bodies that are
-/// stiff, light, or in small voxels.
+/// stiff, light, or made of small voxels.
 ///
 /// [`StepReport::scaled_bodies`](crate::StepReport::scaled_bodies) and
 /// [`Event::StiffBodyScaled`](crate::Event::StiffBodyScaled) tell when a body is scaled.
@@ -43,13 +43,13 @@ pub enum StiffBodies {
     /// [`WorldConfig::max_substeps`] does not limit them. The time of a tick grows in proportion to the
     /// substeps. Bodies that require still more have their mass scaled.
     Exact,
-    /// *Selective mass scaling*: the inertia of all deformation is multiplied by the
+    /// *Selective mass scaling*: the inertia of deformation is multiplied by the
     /// [mass scale](crate::SoftBody::mass_scale) s, the squared ratio of the required and the allowed number
-    /// of substeps. Deformation is √s times slower. Rigid motion keeps the true mass, so shape and stress at
+    /// of substeps. Deformation is √s times slower, uniform stretching at most √s times. Rigid motion keeps the true mass, so shape and stress at
     /// rest, the load of fracture, momentum and free fall are exact. Bounces lose height from s = 2 on.
     ///
-    /// A piece with fixed nodes has no free rigid motion. It is exact at rest; it swings √s times slower, and
-    /// a moving fixed node feels s times its inertia.
+    /// A piece with fixed nodes, or with nodes that a grip holds, has no free rigid motion. It is exact at rest;
+    /// it swings √s times slower, and a moving fixed node feels s times its inertia.
     #[default]
     MassScaled,
     /// Young's modulus is multiplied by the [stiffness scale](crate::SoftBody::stiffness_scale), 1/s. The

@@ -27,6 +27,7 @@ impl<D: Dim> World<D> {
     pub fn add_soft_body(&mut self, mut body: SoftBody<D>) -> Result<SoftBodyHandle, Error> {
         body.check_range(|at| at)?;
         body.scale_for(&self.config);
+        body.announce_scale();
         let id = self.bodies.insert(body);
         // The body may have fallen asleep in another world.
         self.wake_body(id);
@@ -42,8 +43,8 @@ impl<D: Dim> World<D> {
     ///
     /// The limit is 0.7 (4/Ω² − h²) / 2h, with the substep h = tick / [`substeps`](World::substeps) and the
     /// angular frequency Ω of the breathing mode of a single voxel. In N dimensions, Ω² = 4 (N λ + 2µ) / ρs²,
-    /// divided by the mass scale, with Lamé's parameters λ and µ, the density ρ and the voxel size s. More substeps, larger voxels or a
-    /// softer material raise the limit.
+    /// divided by the mass scale, with Lamé's parameters λ and µ, the density ρ and the voxel size s. More
+    /// substeps, larger voxels or a softer material raise the limit.
     ///
     /// # Errors
     /// [`Error::InvalidHandle`] if the handle is stale.

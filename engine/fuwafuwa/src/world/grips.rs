@@ -23,8 +23,8 @@ use glam::Vec3;
 use std::collections::BTreeSet;
 use std::marker::PhantomData;
 
-/// Distance from its place at which a sleeping node is left behind, so that its piece wakes [voxels]. Smaller
-/// motions are not visible.
+/// Distance of a sleeping held node from its place above which its piece wakes [voxels]. Smaller motions are not
+/// visible.
 const WAKE_DISTANCE: f32 = 1e-3;
 
 /// Grip on a region of a soft body, to add with [`World::add_grip`].
@@ -125,6 +125,8 @@ pub(crate) struct GripState {
     drive: Drive,
     /// Gripped nodes.
     nodes: Vec<GrippedNode>,
+    /// Corners of the nodes that were fixed before, by the program and not by a grip.
+    fixed_before: Vec<(Point, Point)>,
     /// Force on the body in the last substep in which it was awake, or mean while it settled [N].
     force: Vec3,
     /// Torque of this force about `point` [N m].
@@ -135,7 +137,9 @@ pub(crate) struct GripState {
     settled: u32,
 }
 
-hash_state! { struct GripState { body, region, drive, nodes, force, torque, point, settled } }
+hash_state! {
+    struct GripState { body, region, drive, nodes, fixed_before, force, torque, point, settled }
+}
 
 /// Internal counterpart of [`GripDrive`].
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -203,6 +207,14 @@ impl GripState {
         nodes
     }
 
+    /// Returns the nodes that were fixed before the grip was added and still exist.
+    fn live_fixed_before<D: Dim>(&self, body: &SoftBody<D>) -> Vec<NodeId> {
+        let corners = self.fixed_before.iter();
+        corners
+            .filter_map(|&corner| node_at(body, corner))
+            .collect()
+    }
+
     /// Grips a node at its present position.
     fn add<D: Dim>(&mut self, body: &SoftBody<D>, node: NodeId, carrier: Option<&RigidState>) {
         let at = body.positions()[node].xyz();
@@ -217,11 +229,17 @@ impl GripState {
     }
 
     /// Grips the nodes that a tear has added between gripped ones: fixed nodes within the lattice box of the
-    /// gripped ones.
-    fn adopt<D: Dim>(&mut self, body: &SoftBody<D>, carrier: Option<&RigidState>) {
-        let known: BTreeSet<NodeId> = { self.live_nodes(body) }
-            .into_iter()
-            .map(|(id, _)| id)
+    /// gripped ones, without `others`, which other grips hold, and without those that were fixed before.
+    fn adopt<D: Dim>(
+        &mut self,
+        body: &SoftBody<D>,
+        carrier: Option<&RigidState>,
+        others: impl Iterator<Item = NodeId>,
+    ) {
+        let own = self.live_nodes(body).into_iter().map(|(id, _)| id);
+        let known: BTreeSet<NodeId> = own
+            .chain(self.live_fixed_before(body))
+            .chain(others)
             .collect();
         let points = self.nodes.iter().map(|node| node.corner.1);
         let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
@@ -273,10 +291,10 @@ impl<'a, D: Dim> GripRef<'a, D> {
     }
 
     /// Returns the force of the grip on the body, and its torque about the mean position of the gripped nodes,
-    /// in the last substep in which the body was awake. After the body has settled, this is the mean over that
-    /// time; a body that falls asleep before its vibration ends leaves it off by up to 1.6 % of the weight.
-    /// [`ReactionForce::about`] returns the torque about another point. Contacts of the gripped nodes themselves
-    /// are not included.
+    /// in the last substep in which the body was awake. After the body has settled, this is the mean over the time
+    /// in which it settled. A body that falls asleep while it still vibrates leaves an error of up to 1.6 % of its
+    /// weight. With sleep turned off there is no mean. [`ReactionForce::about`] returns the torque about another
+    /// point. Contacts of the gripped nodes themselves and external fields are not included.
     pub fn reaction(&self) -> ReactionForce<D> {
         self.state.reaction()
     }
@@ -289,7 +307,7 @@ impl<'a, D: Dim> GripRef<'a, D> {
 
 impl<D: Dim> World<D> {
     /// Adds a grip. Its body wakes. A held node counts as [fixed](SoftBody::fix_node), and is free after the grip
-    /// is removed.
+    /// is removed, unless it was fixed before or another grip holds it.
     ///
     /// # Errors
     /// [`Error`] if a handle is stale, the carrier is neither fixed nor kinematic, the region is not
@@ -314,6 +332,7 @@ impl<D: Dim> World<D> {
             region: grip.region.solid(),
             drive,
             nodes: Vec::new(),
+            fixed_before: Vec::new(),
             force: Vec3::ZERO,
             torque: Vec3::ZERO,
             point: Vec3::ZERO,
@@ -327,6 +346,12 @@ impl<D: Dim> World<D> {
             let expected = "a region with nodes of the body";
             return Err(Error::parameter("region", expected, grip.region));
         }
+        if state.holds() {
+            let held = self.held_nodes(grip.body, None);
+            let fixed = body.mesh().nodes().map(|(id, _)| id);
+            let fixed = fixed.filter(|&id| body.is_fixed(id) && !held.contains(&id));
+            state.fixed_before = fixed.map(|id| corner_of(body, id)).collect();
+        }
         self.wake_up(grip.body)?;
         if state.holds() {
             let body = self.bodies.get_mut(grip.body)?;
@@ -339,14 +364,30 @@ impl<D: Dim> World<D> {
     #[inline(never)]
     pub(crate) fn remove_grip(&mut self, grip: GripHandle) -> Result<Grip<D>, Error> {
         let grip = self.grips.remove(grip)?;
+        let held = self.held_nodes(grip.body, None);
         if let Ok(body) = self.bodies.get_mut(grip.body) {
             if grip.holds() {
-                let nodes = grip.live_nodes(body);
-                nodes.into_iter().for_each(|(node, _)| body.free_node(node));
+                let kept = grip.live_fixed_before(body).into_iter();
+                let kept: BTreeSet<NodeId> = kept.chain(held).collect();
+                let nodes = grip.live_nodes(body).into_iter().map(|(node, _)| node);
+                let freed = nodes.filter(|node| !kept.contains(node));
+                freed.for_each(|node| body.free_node(node));
             }
             self.wake_up(grip.body)?;
         }
         Ok(grip.definition())
+    }
+
+    /// Returns the nodes of a body that grips hold, without those of the grip `except`.
+    fn held_nodes(&self, body: SoftBodyHandle, except: Option<GripHandle>) -> BTreeSet<NodeId> {
+        let grips = self.grips.entries();
+        let grips =
+            grips.filter(|&(id, grip)| grip.body == body && grip.holds() && Some(id) != except);
+        let Ok(body) = self.bodies.get(body) else {
+            return BTreeSet::new();
+        };
+        let nodes = grips.flat_map(|(_, grip)| grip.live_nodes(body));
+        nodes.map(|(node, _)| node).collect()
     }
 
     /// Returns a grip.
@@ -397,12 +438,16 @@ impl<D: Dim> World<D> {
                 self.events.push(Event::GripEnded { grip });
             }
         }
-        for grip in self.grips.iter_mut().filter(|grip| grip.holds()) {
+        let holding = self.grips.entries().filter(|(_, grip)| grip.holds());
+        let others = holding.map(|(id, grip)| (id, self.held_nodes(grip.body, Some(id))));
+        let others: Vec<(GripHandle, BTreeSet<NodeId>)> = others.collect();
+        for (id, others) in others {
+            let grip = self.grips.get_mut(id).expect("the grip was just listed");
             let carrier = grip
                 .carrier()
                 .and_then(|carrier| self.rigids.get(carrier).ok());
             if let Ok(body) = self.bodies.get(grip.body) {
-                grip.adopt(body, carrier);
+                grip.adopt(body, carrier, others.into_iter());
             }
         }
     }
@@ -436,12 +481,16 @@ impl<D: Dim> World<D> {
                         .iter()
                         .filter(|&&(node, _)| body.inverse_masses()[node] > 0.0);
                     let free: Vec<NodeId> = free.map(|&(node, _)| node).collect();
-                    let mass: f32 = free.iter().map(|&node| body.masses()[node]).sum();
+                    // Nodes that sleep carry their share of the force, too.
+                    let all = nodes.iter().map(|&(node, _)| node);
+                    let all = all.filter(|&node| body.inverse_masses()[node] > 0.0);
+                    let mass: f32 = all.map(|node| body.masses()[node]).sum();
                     for node in free {
                         let share = force * (body.masses()[node] / mass);
                         sum.add(share, body.positions()[node].xyz());
+                        let pace = body.pace_share(body.pieces().of_node(node));
                         let (impulse, inverse_mass) =
-                            (share * duration, body.inverse_masses()[node]);
+                            (share * (duration * pace), body.inverse_masses()[node]);
                         body.velocities_mut()[node] += Row::from(impulse * inverse_mass);
                         body.push_responses(&[(node, 1.0)], impulse);
                     }
@@ -481,9 +530,13 @@ impl<D: Dim> World<D> {
                 };
                 let now: ReactionForce<D> = sum.about(D::Vector::from_vec3(centre));
                 let reaction = grip.reaction().mean_with(now, grip.settled);
-                grip.point = centre;
-                grip.force = reaction.force.to_vec3();
-                grip.torque = reaction.torque.to_vec3();
+                let (force, torque) = (reaction.force.to_vec3(), reaction.torque.to_vec3());
+                let is_finite = force.is_finite() && torque.is_finite() && centre.is_finite();
+                // A body that became non-finite is quarantined; its grip has no reaction then.
+                (grip.force, grip.torque, grip.point, grip.settled) = match is_finite {
+                    true => (force, torque, centre, grip.settled),
+                    false => (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, 0),
+                };
             }
         }
         woken.sort_unstable();

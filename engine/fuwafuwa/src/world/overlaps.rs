@@ -87,7 +87,11 @@ impl<D: Dim> World<D> {
         }
         let known = std::mem::take(&mut self.overlaps.pairs);
         let mut pairs = self.placed_pairs();
-        pairs.extend(known.iter().filter(|pair| self.exist(pair)));
+        pairs.extend(
+            known
+                .iter()
+                .filter(|pair| self.exist(pair) && self.meet(pair)),
+        );
         pairs.sort_unstable();
         pairs.dedup();
         for pair in pairs {
@@ -110,6 +114,16 @@ impl<D: Dim> World<D> {
 
     fn exist(&self, pair: &[ObjectRef; 2]) -> bool {
         pair.iter().all(|&object| self.exists(object))
+    }
+
+    /// Returns whether the layers of two existing objects meet, and neither is a sensor.
+    fn meet(&self, pair: &[ObjectRef; 2]) -> bool {
+        let layers = |object: ObjectRef| Some(self.bodies[object.soft_body()?].layers());
+        match (layers(pair[0]), layers(pair[1]), pair[1].rigid_body()) {
+            (Some(own), Some(other), _) => own.meet(other),
+            (Some(own), None, Some(rigid)) => self.rigids[rigid].meets(own),
+            _ => false,
+        }
     }
 
     /// Returns the pairs of a placed object and another one whose boxes overlap.

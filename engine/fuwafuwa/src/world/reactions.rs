@@ -88,9 +88,12 @@ impl<D: Dim> World<D> {
     /// While both objects of a contact sleep or stand still, its force is the mean over the time in which they
     /// settled: a floor carries the weight of a sleeping body within 1.6 %. A joint keeps its last force.
     ///
-    /// Not included is what holds [fixed nodes](World::fixed_node_reaction), and contacts of kinematic and coupled
-    /// bodies with each other and with fixed bodies: see
-    /// [`RigidBodyRef::reactions`](crate::RigidBodyRef::reactions) of the kinematic or coupled body.
+    /// Not included are:
+    ///
+    /// - what holds [fixed nodes](World::fixed_node_reaction);
+    /// - contacts of kinematic and coupled bodies with each other and with fixed bodies: see
+    ///   [`RigidBodyRef::reactions`](crate::RigidBodyRef::reactions) of the kinematic or coupled body;
+    /// - the force of a knife on the body that it cuts, and the forces of grips on a single piece.
     ///
     /// ```
     /// use fuwafuwa::{Dim3, RigidBody, Shape, Vec3, World, WorldConfig};
@@ -179,8 +182,9 @@ impl<D: Dim> World<D> {
     /// Returns the force and torque that hold the [fixed](SoftBody::fix_node) nodes of a body inside `region` or
     /// on its surface: the opposite of their elastic forces in the last substep and of their weight. A body that
     /// sleeps keeps the elastic forces with which it fell asleep, so its slow vibration may change the reaction
-    /// by up to 3 %; the reaction of a [grip](crate::Grip) is a mean. The torque is about the centre of mass of these nodes. An external
-    /// [field](crate::Hooks::field), and contacts of the fixed nodes themselves, are not included.
+    /// by up to 3 %; the reaction of a [grip](crate::Grip) is a mean. The torque is about the centre of mass of
+    /// these nodes. An external [field](crate::Hooks::field), and contacts of the fixed nodes themselves, are not
+    /// included.
     ///
     /// ```
     /// use fuwafuwa::{Material, NodeId, Shape, SoftBody, Vec2, VoxelGrid, World2, WorldConfig};

@@ -58,7 +58,7 @@ pub fn filter_centres<D: Dim>(
         let size = body.grid().voxel_size();
         let pieces = body.pieces_mut().list.iter_mut().zip(motions[slot].iter());
         for (piece, motion) in pieces.filter(|(_, motion)| motion.nodes > 0) {
-            let centre = motion.centre.as_vec3();
+            let centre = motion.mass_centre.as_vec3();
             piece.settled_at = filtered(piece.settled_at, centre, size, duration);
         }
     }
@@ -95,7 +95,7 @@ pub fn pressed_sleepers<D: Dim>(
         let motion = motions[slot].get(piece.index());
         motion.is_some_and(|motion| {
             let body = bodies.at(slot);
-            let apart = motion.centre.as_vec3() - body.pieces().list[piece].settled_at;
+            let apart = motion.mass_centre.as_vec3() - body.pieces().list[piece].settled_at;
             motion.nodes > 0 && apart.length() > WAKE_STRAY * body.grid().voxel_size()
         })
     };
@@ -157,13 +157,18 @@ pub fn fall_asleep<D: Dim>(
     duration: f32,
 ) -> Vec<Hit> {
     for (slot, body) in bodies.by_slot_mut() {
-        let (size, scale) = (body.grid().voxel_size(), body.gravity_scale());
-        let speed = f64::from(rest.sleep_speed(scale, size));
-        let stray = SLEEP_TIME * rest.drift_speed(scale, size);
+        let (size, gravity_scale) = (body.grid().voxel_size(), body.gravity_scale());
+        let mass_scale = body.mass_scale() as f32;
         let pieces = body.pieces_mut().list.iter_mut();
         for (piece, motion) in pieces.zip(motions[slot].iter()) {
+            // A piece with fixed nodes whose mass is scaled accelerates and swings more slowly.
+            let slowdown = if motion.is_clamped() { mass_scale } else { 1.0 };
+            let gravity_scale = gravity_scale / slowdown;
+            let duration = duration / slowdown.sqrt();
+            let speed = f64::from(rest.sleep_speed(gravity_scale, size));
+            let stray = SLEEP_TIME * rest.drift_speed(gravity_scale, size);
             let is_slow = motion.speed_squared < speed * speed && !motion.is_driven;
-            let strayed = (motion.centre.as_vec3() - piece.settled_at).length();
+            let strayed = (motion.mass_centre.as_vec3() - piece.settled_at).length();
             piece.sleep_timer = if is_slow && strayed < stray {
                 piece.sleep_timer + duration
             } else {

@@ -24,8 +24,8 @@ impl<'a, D: Dim> JointRef<'a, D> {
     }
 
     /// Returns the force on the first anchor in the last substep [N]. The force on the second anchor is opposite.
-    /// While both bodies sleep, this is the force in the substep before: of a soft body that hung on the joint and
-    /// still vibrated a little, it differs from the weight by up to 15 %.
+    /// While both bodies sleep, the last force is kept. If a soft body still vibrated when it fell asleep, the force
+    /// differs from its weight by up to 15 %.
     pub fn reaction(&self) -> D::Vector {
         D::Vector::from_vec3(self.state.reaction())
     }
