@@ -184,8 +184,10 @@ fn ball_mesh_has_two_triangles_per_bare_face_while_it_tears() {
     let before = is_even(&app);
     let mut torn = 0;
     let mut parted = 0;
-    for tick in 0..45 {
-        let down = at(0.1, 1.6 - 0.035 * tick as f32);
+    // The blade moves down into the ball, then sideways through it.
+    for tick in 0..90 {
+        let aside = 0.03 * f32::from(u8::saturating_sub(tick, 40));
+        let down = at(0.1 + aside, 1.6 - 0.035 * f32::from(tick.min(40)));
         app.world_mut().entity_mut(blade).insert(down);
         app.update();
         torn += messages::<NodeSplit>(&app).len();
