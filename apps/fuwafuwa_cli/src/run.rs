@@ -225,7 +225,7 @@ fn run_in<D: Filmed>(scene: &Scene, arguments: &Arguments) -> Result<ExitCode> {
     };
     if slowed_impacts > 0 {
         output::warn(format!(
-            "{slowed_impacts} impacts were too fast for the substeps and were slowed"
+            "impacts too fast for the substeps, which were slowed: {slowed_impacts}"
         ));
     }
     report::warn_of_scales(&world);
