@@ -1,10 +1,10 @@
 //! Far from the origin: at the edge of its range, a body at rest must have the same shape as at the origin;
 //! beyond it, the body must be refused.
 
+use super::motion::centre;
 use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::glam::DVec3;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
     Damping, Dim, Dim2, Dim3, DimVector, Material, RigidBody, Shape, SoftBody, VoxelGrid, World,
@@ -87,12 +87,8 @@ fn shape<D: Dim>(body: SoftBody<D>, at: D::Vector) -> Result<Vec<[f64; 3]>> {
         world.step();
     }
     let body = &world[id];
-    let nodes = body.mesh().nodes().map(|(node, _)| body.node_state(node));
-    let nodes = nodes.map(|(at, _, mass)| (at.to_vec3().as_dvec3(), f64::from(mass)));
-    let nodes: Vec<(DVec3, f64)> = nodes.collect();
-    let total = body.total_mass();
-    let centre = nodes.iter().map(|&(at, mass)| at * (mass / total));
-    let centre = centre.fold(DVec3::ZERO, |sum, part| sum + part);
-    let nodes = nodes.iter();
-    Ok(nodes.map(|&(at, _)| (at - centre).to_array()).collect())
+    let centre = centre(body);
+    let nodes = body.mesh().nodes().map(|(node, _)| body.node_state(node).0);
+    let offsets = nodes.map(|at| (at.to_vec3().as_dvec3() - centre).to_array());
+    Ok(offsets.collect())
 }

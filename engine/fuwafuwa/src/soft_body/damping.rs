@@ -88,11 +88,6 @@ impl PieceMotion {
         self.mass_centre = origin + self.mass_centre / self.mass;
     }
 
-    /// Returns whether the piece has fixed nodes.
-    pub fn is_clamped(&self) -> bool {
-        self.weight > self.mass
-    }
-
     /// Returns the rigid motion that has the linear and angular momentum of the piece; zero for a sleeping
     /// piece.
     pub fn rigid(&self) -> RigidMotion {

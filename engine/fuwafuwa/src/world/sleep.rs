@@ -162,7 +162,11 @@ pub fn fall_asleep<D: Dim>(
         let pieces = body.pieces_mut().list.iter_mut();
         for (piece, motion) in pieces.zip(motions[slot].iter()) {
             // A piece with fixed nodes whose mass is scaled accelerates and swings more slowly.
-            let slowdown = if motion.is_clamped() { mass_scale } else { 1.0 };
+            let slowdown = if motion.has_fixed_nodes() {
+                mass_scale
+            } else {
+                1.0
+            };
             let gravity_scale = gravity_scale / slowdown;
             let duration = duration / slowdown.sqrt();
             let speed = f64::from(rest.sleep_speed(gravity_scale, size));
