@@ -37,8 +37,9 @@
 
 use crate::Settings;
 
-/// Ratio of damping to stiffness [s], about the delay between computing a force and feeling it.
-const LEAD: f32 = 0.03;
+/// Ratio of damping to stiffness [s]: 20 ms of driver and cable, half an update, and the lag [`SPEED`] of the
+/// stick velocity.
+const LEAD: f32 = 0.035;
 /// Time constant of the low-pass filter for the stick velocity [s]. A larger value delays the damping force.
 /// With a smaller value, players feel the steps of a coarse axis.
 const SPEED: f32 = 0.008;
