@@ -24,6 +24,7 @@ mod integration;
 mod piece_removal;
 mod placement;
 mod release;
+pub mod skin_point;
 mod sleep_flags;
 
 use crate::error::{Error, require};
@@ -41,6 +42,7 @@ use crate::topology::connectivity::Connectivity;
 use crate::topology::grid::VoxelGrid;
 use crate::topology::mesh::{Element, Mesh};
 use crate::topology::pieces::Pieces;
+use crate::topology::skin::Skin;
 use body_properties::{BodyProperties, elasticities, plasticities};
 pub(crate) use body_state::MAX_GRAVITY_SCALE;
 use body_state::State;
@@ -164,6 +166,8 @@ impl<D: Dim> SoftBody<D> {
         let voxels: Vec<Point> = self.topology.grid.voxels().collect();
         self.expose(&voxels);
         let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
+        self.cache.skin = Skin::of(&self.topology.grid).into();
+        self.update_skin_points(&nodes);
         self.update_mass_damping(&nodes);
         if self.topology.hierarchy.grading() != Grading::Coarse {
             self.find_breakable(&nodes);

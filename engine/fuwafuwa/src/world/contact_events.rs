@@ -163,7 +163,7 @@ impl<D: Dim> World<D> {
                 ObjectRef::RigidBody(rigid),
             ];
             sums.add(objects, pair.impulse.total, pair.impulse.speed, || {
-                let point = body.positions()[pair.node].xyz();
+                let point = body.skin_position(pair.node);
                 [point, self.rigids[rigid].shape().distance(point).1]
             });
         }

@@ -1,6 +1,5 @@
 //! Impulses between two sides of a contact.
 
-#[cfg(feature = "serde")]
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::soft_body::element_forces::Row;
@@ -31,7 +30,6 @@ impl Impulse {
     }
 }
 
-#[cfg(feature = "serde")]
 impl Impulse {
     /// Clears the unused components of the friction impulse: the fourth one, and in 2D also the third.
     pub fn flatten<D: Dim>(&mut self) {

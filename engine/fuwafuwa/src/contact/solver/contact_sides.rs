@@ -14,8 +14,12 @@ id! {
 #[derive(Copy, Clone, Debug)]
 pub struct NodeContact {
     pub contact: Contact,
+    /// Velocity row of the node.
     pub node: NodeRow,
-    /// Rigid body, if it can move, and the lever arm from the body's position to the node [m].
+    /// Velocity rows of the neighbours of the node's skin point, and their weights; `None` if the contact is at
+    /// the node itself.
+    pub neighbours: Option<([NodeRow; 3], [f32; 3])>,
+    /// Rigid body, if it can move, and the lever arm from the body's position to the contact [m].
     pub mover: Option<(RigidSlot, Vec3)>,
 }
 

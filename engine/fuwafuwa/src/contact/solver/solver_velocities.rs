@@ -120,7 +120,13 @@ impl SolverVelocities {
     /// Returns the velocity of a node relative to the rigid body that it touches [m/s].
     #[inline(always)]
     pub fn relative_of_node(&self, row: &NodeContact, rigids: &RigidBodies) -> Row {
-        let own = self.rows[row.node];
+        let mut own = self.rows[row.node];
+        if let Some((neighbours, weights)) = row.neighbours {
+            own = own * (1.0 - weights[0] - weights[1] - weights[2]);
+            for axis in 0..3 {
+                own += self.rows[neighbours[axis]] * weights[axis];
+            }
+        }
         let other = row.mover.map_or(Row::ZERO, |mover| velocity(mover, rigids));
         with_fourth(own - other, 0.0)
     }
@@ -134,8 +140,18 @@ impl SolverVelocities {
         impulse: Row,
         duration: f32,
     ) {
+        // The fourth component is the inverse mass of the node, which no impulse changes.
+        let impulse = with_fourth(impulse, 0.0);
+        let mut own_weight = 1.0;
+        if let Some((neighbours, weights)) = row.neighbours {
+            own_weight = 1.0 - weights[0] - weights[1] - weights[2];
+            for axis in 0..3 {
+                let other = &mut self.rows[neighbours[axis]];
+                *other += impulse * (weights[axis] * other[3]);
+            }
+        }
         let own = &mut self.rows[row.node];
-        *own += impulse * own[3];
+        *own += impulse * (own_weight * own[3]);
         if let Some(mover) = row.mover {
             push(mover, rigids, -impulse, duration);
         }
