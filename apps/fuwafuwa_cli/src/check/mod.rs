@@ -17,6 +17,7 @@ mod random;
 mod sag;
 mod slope;
 mod slow;
+mod sphere;
 mod spin;
 mod stack;
 mod statics;
@@ -65,6 +66,8 @@ enum Which {
     Heap,
     /// Bodies that sag, float or slide slowly must not be stopped.
     Slow,
+    /// A ball must resist a plate as a smooth elastic ball does.
+    Sphere,
     /// Blocks on inclined planes must slide as Coulomb's law says, or rest.
     Slope,
     /// A ring squeezed shut must not pass through itself.
@@ -81,7 +84,7 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 16] = [
+    let checks: [(Which, Check); 17] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
@@ -94,6 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         (Which::Stack, stack::check),
         (Which::Heap, heap::check),
         (Which::Slow, slow::check),
+        (Which::Sphere, sphere::check),
         (Which::Slope, slope::check),
         (Which::Doughnut, doughnut::check),
         (Which::FreeFall, free_fall::check),
