@@ -26,6 +26,7 @@ fn instances_of<D: Dim>() {
         crate::VoxelGrid::<D>::flower as *const (),
         crate::VoxelGrid::<D>::solid_count as *const (),
         crate::VoxelGrid::<D>::remaining_count as *const (),
+        crate::topology::skin::Skin::of::<D> as *const (),
         crate::topology::connectivity::Connectivity::<D>::new as *const (),
         crate::topology::connectivity::Connectivity::<D>::normalise as *const (),
         crate::topology::cell_hierarchy::CellHierarchy::<D>::new as *const (),

@@ -26,6 +26,7 @@ mod piece_removal;
 pub(crate) mod piece_response;
 mod placement;
 mod release;
+pub mod skin_point;
 mod sleep_flags;
 mod stiff_body;
 
@@ -44,6 +45,7 @@ use crate::topology::connectivity::Connectivity;
 use crate::topology::grid::VoxelGrid;
 use crate::topology::mesh::{Element, Mesh};
 use crate::topology::pieces::Pieces;
+use crate::topology::skin::Skin;
 use body_properties::{BodyProperties, elasticities, plasticities};
 pub(crate) use body_state::MAX_GRAVITY_SCALE;
 use body_state::State;
@@ -159,6 +161,8 @@ impl<D: Dim> SoftBody<D> {
         let voxels: Vec<Point> = self.topology.grid.voxels().collect();
         self.expose(&voxels);
         let nodes: Vec<NodeId> = self.topology.mesh.nodes().map(|(id, _)| id).collect();
+        self.cache.skin = Skin::of(&self.topology.grid).into();
+        self.update_skin_points(&nodes);
         self.update_mass_damping(&nodes);
         if self.topology.hierarchy.grading() != Grading::Coarse {
             self.find_breakable(&nodes);

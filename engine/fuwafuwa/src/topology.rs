@@ -7,3 +7,4 @@ pub mod element_class;
 pub mod grid;
 pub mod mesh;
 pub mod pieces;
+pub mod skin;

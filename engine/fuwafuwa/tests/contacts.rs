@@ -78,9 +78,10 @@ fn contacts_begin_and_end<D: Dim>() {
         }
     }
     let (first, speed) = began[0];
-    // A free fall by h = 1 m ends at the speed √(2 g h) = 4.43 m/s.
+    // A free fall by h = 1 m ends at the speed √(2 g h) = 4.43 m/s. The skin, half a voxel higher, falls a little
+    // further and swings after the first touch.
     assert!(
-        (26..30).contains(&first) && (speed - 4.43).abs() < 0.3,
+        (26..30).contains(&first) && (speed - 4.43).abs() < 0.4,
         "{first} {speed}"
     );
     assert_eq!(

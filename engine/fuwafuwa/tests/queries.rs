@@ -148,7 +148,7 @@ fn check_nearest<D: Dim>() {
             // No corner of an exposed face may be nearer than the closest point found.
             let (_, body) = world.soft_bodies().next().unwrap();
             let corners = body
-                .facets()
+                .skin_facets()
                 .flat_map(|facet| facet.corners.into_iter().take(D::CORNERS / 2));
             let apart = |corner: Vec3| (corner - at.to_vec3()).length();
             let corner = corners.map(apart).fold(f32::INFINITY, f32::min);
@@ -423,7 +423,7 @@ fn check_cache<D: Dim>(world: &World<D>, step: &str) {
         let loaded = fuwafuwa::snapshot::load::<D>(&bytes).unwrap();
         assert_eq!(known, answers(&loaded), "{step}");
     }
-    let facets = || world.soft_bodies().flat_map(|(_, body)| body.facets());
+    let facets = || world.soft_bodies().flat_map(|(_, body)| body.skin_facets());
     let mut hits = 0;
     for direction in around::<D>() {
         let origin = direction * 4.0;

@@ -285,7 +285,7 @@ fn check_callback<D: Dim>(tick: f32) {
     let hand = world.add_rigid_body(hand).unwrap();
     let mut most = 0.0f32;
     for number in 1..=(0.5 / tick).round() as u32 {
-        let down = (1.2 * number as f32 * tick).min(0.4);
+        let down = (1.2 * number as f32 * tick).min(0.55);
         world
             .set_target_position(hand, vector(-0.2, 1.2 - down, depth))
             .unwrap();

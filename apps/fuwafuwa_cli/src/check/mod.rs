@@ -22,6 +22,7 @@ mod sag;
 mod scale;
 mod slope;
 mod slow;
+mod sphere;
 mod spin;
 mod stack;
 mod statics;
@@ -70,6 +71,8 @@ enum Which {
     Heap,
     /// Bodies that sag, float or slide slowly must not be stopped.
     Slow,
+    /// A ball must resist a plate as a smooth elastic ball does.
+    Sphere,
     /// Blocks on inclined planes must slide as Coulomb's law says, or rest.
     Slope,
     /// A ring squeezed shut must not pass through itself.
@@ -96,7 +99,7 @@ type Check = fn(&Progress) -> Result<Vec<Outcome>>;
 
 /// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 21] = [
+    let checks: [(Which, Check); 22] = [
         (Which::Patch, patch::check),
         (Which::Beam, beam::check),
         (Which::Sag, sag::check),
@@ -109,6 +112,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         (Which::Stack, stack::check),
         (Which::Heap, heap::check),
         (Which::Slow, slow::check),
+        (Which::Sphere, sphere::check),
         (Which::Slope, slope::check),
         (Which::Doughnut, doughnut::check),
         (Which::FreeFall, free_fall::check),

@@ -138,10 +138,18 @@ impl Contacts {
                     pair.impulse.clear();
                     continue;
                 }
-                let (at, velocity) = (body.positions()[node], body.velocities()[node]);
+                let skin = body.skin_point(node);
+                let (at, velocity, stretch) = match skin.is_node() {
+                    true => (body.positions()[node], body.velocities()[node], 1.0),
+                    false => (
+                        skin.mean(node, body.positions()),
+                        skin.mean(node, body.velocities()),
+                        skin.stretch(),
+                    ),
+                };
                 // Skips nodes that are too slow to reach a resting rigid shape in this substep, in any
                 // direction: most nodes.
-                let reachable = (pair.clear - travel).max(0.0) / (AHEAD * duration);
+                let reachable = (pair.clear - stretch * travel).max(0.0) / (AHEAD * duration);
                 if !moves && inner::<D>(velocity, velocity) < reachable * reachable {
                     continue;
                 }
@@ -162,7 +170,7 @@ impl Contacts {
                     pair.impulse.clear();
                     // A contact becomes active below a gap of `CLOSE` voxels. The factor 1.1 allows for
                     // rounding.
-                    pair.clear = travel + gap - 1.1 * CLOSE * size;
+                    pair.clear = stretch * travel + gap - 1.1 * CLOSE * size;
                     continue;
                 }
                 pair.clear = 0.0;
@@ -180,8 +188,11 @@ impl Contacts {
                         hits.rigids.push(pair.rigid);
                     }
                 }
-                let inverse_mass =
-                    body.inverse_masses()[node] + rigid.max_inverse_effective_mass(at.xyz());
+                let own_inverse_mass = match skin.is_node() {
+                    true => body.inverse_masses()[node],
+                    false => skin.inverse_mass(node, body.inverse_masses()),
+                };
+                let inverse_mass = own_inverse_mass + rigid.max_inverse_effective_mass(at.xyz());
                 // A sleeping node acts as a fixed obstacle for a dynamic rigid body. Skips the node's contacts
                 // with all other rigid bodies.
                 if body.inverse_masses()[node] == 0.0 && !rigid.is_dynamic() {
@@ -202,14 +213,21 @@ impl Contacts {
             hits.pieces.extend(hit.pieces);
             hits.rigids.extend(hit.rigids);
             self.nodes
-                .extend(contacts.into_iter().map(|(contact, pair)| NodeContact {
-                    contact,
-                    node: self.velocities.row(pair.body, pair.node),
-                    mover: rigids.at(pair.rigid).moves().then(|| {
-                        let at = bodies.at(pair.body).positions()[pair.node];
-                        let lever = at.xyz() - rigids.at(pair.rigid).position();
-                        (pair.rigid, lever)
-                    }),
+                .extend(contacts.into_iter().map(|(contact, pair)| {
+                    let body = bodies.at(pair.body);
+                    let skin = body.skin_point(pair.node);
+                    let mut row = |node| self.velocities.row(pair.body, node);
+                    NodeContact {
+                        contact,
+                        node: row(pair.node),
+                        neighbours: (!skin.is_node())
+                            .then(|| (skin.neighbours.map(&mut row), skin.weights)),
+                        mover: rigids.at(pair.rigid).moves().then(|| {
+                            let at = body.skin_row(pair.node);
+                            let lever = at.xyz() - rigids.at(pair.rigid).position();
+                            (pair.rigid, lever)
+                        }),
+                    }
                 }));
         }
     }

@@ -106,6 +106,7 @@ macro_rules! short_numbers {
 
 short_numbers! {
     bool => u32::from,
+    i8 => |number| u32::from(number.cast_unsigned()),
     u8 => u32::from,
     u32 => |number| number,
     i32 => i32::cast_unsigned,

@@ -76,7 +76,7 @@ pub struct BodyTrees {
     positions: IndexVec<NodeId, Row>,
     /// Bounding box of all nodes [m].
     bounds: Bounds,
-    /// Exposed faces, in the order of [`SoftBody::facets`].
+    /// Smooth surface, in the order of [`SoftBody::skin_facets`].
     pub surface: ListTree<Facet>,
     /// Filled cells, built by the first query that requires them.
     cells: OnceLock<ListTree<FilledCell>>,
@@ -176,7 +176,7 @@ impl BodyTrees {
             bookmark: body.bookmark(),
             positions: body.positions().clone(),
             bounds: body_bounds(body),
-            surface: ListTree::new(body.facets().collect(), facet_bounds::<D>),
+            surface: ListTree::new(body.skin_facets().collect(), facet_bounds::<D>),
             cells: OnceLock::new(),
             uses_cells: AtomicBool::new(false),
         }
@@ -193,7 +193,7 @@ impl BodyTrees {
         self.bounds = body_bounds(body);
         let is_same = |a: &Facet, b: &Facet| a.element == b.element && a.nodes == b.nodes;
         let surface = &mut self.surface;
-        surface.update(body.facets().collect(), is_same, facet_bounds::<D>);
+        surface.update(body.skin_facets().collect(), is_same, facet_bounds::<D>);
         let uses_cells = std::mem::take(self.uses_cells.get_mut());
         match self.cells.get_mut() {
             Some(cells) if uses_cells => {
@@ -247,11 +247,11 @@ fn cell_bounds<D: Dim>(cell: &FilledCell) -> Bounds {
     around_all(cell.corners.into_iter().take(D::CORNERS))
 }
 
-/// Returns the bounding box of all nodes of a body. Interior nodes are included, because they can lie outside
-/// the surface where a body is strongly folded.
+/// Returns the bounding box of all nodes of a body and of the smooth surface. Interior nodes are included, because they
+/// can lie outside the surface where a body is strongly folded.
 fn body_bounds<D: Dim>(body: &SoftBody<D>) -> Bounds {
     let nodes = body.mesh().nodes();
-    around_all(nodes.map(|(node, _)| body.positions()[node].xyz()))
+    around_all(nodes.flat_map(|(node, _)| [body.positions()[node].xyz(), body.skin_position(node)]))
 }
 
 /// Returns the filled cells of a body, in the order of the elements that contain them.

@@ -8,7 +8,10 @@ use crate::soft_body::element_forces::Row;
 use crate::soft_body::fast_motion::Pace;
 use crate::soft_body::momentum::RigidMotionF32;
 use crate::soft_body::piece_response::PieceResponse;
+use crate::soft_body::skin_point::SkinPoint;
 use crate::topology::changes::History;
+use crate::topology::skin::Skin;
+use std::sync::Arc;
 
 /// Data derived from the topology and the state of a body. Snapshots do not contain these data.
 /// `SoftBody::rebuild` recomputes them after loading, except the last six fields: `history` starts empty,
@@ -32,6 +35,10 @@ pub struct Cache {
     /// element; see
     /// [`Connectivity::connected_voxels`](crate::topology::connectivity::Connectivity::connected_voxels).
     pub connected_voxels: IndexVec<ElementId, u32>,
+    /// Smooth surface of the voxels. It stays the same after cracks.
+    pub skin: Arc<Skin>,
+    /// Point of the smooth surface of each node, by id.
+    pub skin_points: IndexVec<NodeId, SkinPoint>,
     /// History of recent cracks and removals, which callers read through bookmarks.
     pub history: History,
     /// Rigid motion of each piece at the last damping round, relative to which positions are extrapolated.

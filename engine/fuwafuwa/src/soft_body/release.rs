@@ -69,7 +69,9 @@ impl<D: Dim> SoftBody<D> {
         let beside = places.concat();
         let lists = [&touched, &self.nodes_of(&beside), &remodelled.abandoned];
         let nodes = lists.into_iter().flatten().copied();
-        self.find_breakable(&ascending(nodes, self.topology.mesh.node_capacity()));
+        let nodes = ascending(nodes, self.topology.mesh.node_capacity());
+        self.find_breakable(&nodes);
+        self.update_skin_points(&nodes);
         self.cache.awake_is_stale = true;
         let new = remodelled.inherited.iter().map(|new| new.node);
         let changes = Changes {

@@ -249,6 +249,23 @@ impl<D: Dim> SoftBody<D> {
             })
     }
 
+    /// Returns the parts of the smooth surface over all exposed faces, in the order of [`SoftBody::facets`]: their
+    /// `corners` are the points of the smooth surface at `nodes`, see [`SoftBody::skin_position`]. Contacts and
+    /// queries use this surface.
+    pub fn skin_facets(&self) -> impl Iterator<Item = Facet> + '_ {
+        self.facets().map(|facet| {
+            let mut corners = facet.corners;
+            for (corner, node) in corners.iter_mut().zip(facet.nodes).take(D::CORNERS / 2) {
+                *corner = self.skin_position(node);
+            }
+            Facet {
+                corners,
+                normal: normal_of::<D>(&corners),
+                ..facet
+            }
+        })
+    }
+
     /// Mask of the exposed faces of an element, with bit 2 · axis + side (0 = low, 1 = high). Always 0 for
     /// elements above level 0. Use [`SoftBody::changes_since`] to learn which elements cracks have changed.
     ///
@@ -405,24 +422,25 @@ impl<D: Dim> SoftBody<D> {
             nodes[place] = element.nodes[ring[place]];
             corners[place] = self.state.position[nodes[place]].xyz();
         }
-        // The normal is perpendicular to a segment in 2D. In 3D it is perpendicular to both diagonals of the
-        // quad, which need not be flat.
-        let normal = match D::N {
-            2 => {
-                let along = corners[1] - corners[0];
-                Vec3::new(along[1], -along[0], 0.0)
-            }
-            _ => (corners[2] - corners[0]).cross(corners[3] - corners[1]),
-        };
         Facet {
             nodes,
             corners,
-            normal: unit(normal),
+            normal: normal_of::<D>(&corners),
             element: id,
             piece: self.topology.pieces.of_element(id),
             is_torn: self.topology.grid.is_solid(beyond(element.cell.at, face)),
         }
     }
+}
+
+/// Returns the outward unit normal of a face: perpendicular to a segment in 2D, and in 3D to both diagonals of a quad,
+/// which need not be flat.
+fn normal_of<D: Dim>(corners: &[Vec3; 4]) -> Vec3 {
+    let [a, b, c, d] = *corners;
+    unit(match D::N {
+        2 => Vec3::new(b.y - a.y, a.x - b.x, 0.0),
+        _ => (c - a).cross(d - b),
+    })
 }
 
 impl ElementView {

@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::foundation::dim::{Dim, Point, points_in};
 use crate::foundation::hash::hash_state;
+use crate::topology::skin;
 use glam::Vec3;
 use std::marker::PhantomData;
 use std::ops::RangeInclusive;
@@ -29,10 +30,13 @@ pub struct VoxelGrid<D: Dim> {
     materials: Vec<u8>,
     /// For each voxel, whether it was removed with its piece. An empty list means that no voxel was removed.
     removed: Vec<bool>,
+    /// Offset of the smooth surface from each surface point, outwards [1/64 voxel], see [`skin::measured`].
+    /// Empty if only the voxels are known.
+    surface: Vec<i8>,
     dim: PhantomData<D>,
 }
 
-hash_state! { [D: Dim] struct VoxelGrid<D> { size, voxel_size, materials, removed } skip { dim } }
+hash_state! { [D: Dim] struct VoxelGrid<D> { size, voxel_size, materials, removed, surface } skip { dim } }
 
 impl<D: Dim> VoxelGrid<D> {
     /// Creates a grid of `size` voxels with edge length `voxel_size` [m]; `material` returns the material
@@ -103,6 +107,97 @@ impl<D: Dim> VoxelGrid<D> {
         Self::from_fn(size, voxel_size, |voxel| {
             material(Self::centre(voxel, voxel_size))
         })
+    }
+
+    /// Creates a grid from a signed distance: a voxel is of material 1 if `distance` is negative at its centre.
+    /// The distance [m] is positive outside, and its argument is a position [m] measured from the low corner of
+    /// the grid; the third coordinate is 0 in 2D.
+    ///
+    /// The grid keeps the surface, at distance 0, to 1/64 voxel. Contacts and queries then see this surface and
+    /// not a smoothed staircase of voxels, which may be wrong by half a voxel. A surface more than a voxel
+    /// from a corner of a voxel (a thin wall) is not reached. [`VoxelGrid::with_materials`] sets other materials.
+    ///
+    /// ```
+    /// use fuwafuwa::{Dim2, Vec3, VoxelGrid};
+    ///
+    /// let centre = Vec3::new(0.5, 0.5, 0.0);
+    /// let disc = |at: Vec3| at.distance(centre) - 0.4;
+    /// let grid = VoxelGrid::<Dim2>::from_distance([16, 16, 1], 1.0 / 16.0, disc)?;
+    /// assert!(grid.has_surface());
+    /// # Ok::<(), fuwafuwa::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// See [`VoxelGrid::from_fn`].
+    pub fn from_distance(
+        size: [usize; 3],
+        voxel_size: f32,
+        distance: impl Fn(Vec3) -> f32,
+    ) -> Result<Self, Error> {
+        let grid = Self::from_centres(size, voxel_size, |at| u8::from(distance(at) < 0.0))?;
+        Ok(grid.with_distance(|at| distance(at * voxel_size) / voxel_size))
+    }
+
+    /// Returns the grid with the surface at which a signed distance [voxels] of a position [voxels] is 0.
+    fn with_distance(mut self, distance: impl Fn(Vec3) -> f32) -> Self {
+        self.surface = skin::measured(&self, distance);
+        self
+    }
+
+    /// Returns the grid with other material numbers; `material` gets each voxel and its present number. The
+    /// grid keeps its [surface](VoxelGrid::has_surface) if the same voxels are solid, and forgets it otherwise.
+    /// Removed voxels stay removed only if they stay solid.
+    ///
+    /// # Errors
+    /// [`Error::EmptyGrid`] if no voxel is solid.
+    pub fn with_materials(
+        mut self,
+        mut material: impl FnMut(Point, u8) -> u8,
+    ) -> Result<Self, Error> {
+        let voxels: Vec<Point> = self.voxels().collect();
+        let mut is_same_shape = true;
+        for (index, &voxel) in voxels.iter().enumerate() {
+            let known = self.materials[index];
+            let new = material(voxel, known);
+            is_same_shape &= (new == 0) == (known == 0);
+            self.materials[index] = new;
+            if new == 0 && !self.removed.is_empty() {
+                self.removed[index] = false;
+            }
+        }
+        if !is_same_shape {
+            self.surface.clear();
+        }
+        if self.materials.iter().all(|&number| number == 0) {
+            return Err(Error::EmptyGrid);
+        }
+        Ok(self)
+    }
+
+    /// Returns whether the grid knows its smooth surface: see [`VoxelGrid::from_distance`]. The constructors of
+    /// balls and rings know it too. Other grids have the smoothed surface of their voxels.
+    pub fn has_surface(&self) -> bool {
+        !self.surface.is_empty()
+    }
+
+    /// Returns the offsets of the smooth surface from the surface points [1/64 voxel]: the lattice points
+    /// between solid and empty voxels, the first axis fastest. `None` if the grid does not know its surface.
+    pub fn surface_offsets(&self) -> Option<&[i8]> {
+        self.has_surface().then_some(&self.surface)
+    }
+
+    /// Returns the grid with the offsets of [`VoxelGrid::surface_offsets`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidParameter`] if the number of offsets is not that of the surface points.
+    pub fn with_surface_offsets(mut self, offsets: Vec<i8>) -> Result<Self, Error> {
+        let count = skin::surface_count(&self);
+        if offsets.len() != count {
+            let expected = format!("{count} offsets, one for each surface point");
+            return Err(Error::parameter("surface", expected, offsets.len()));
+        }
+        self.surface = offsets;
+        Ok(self)
     }
 
     /// Returns the grid with all lengths multiplied by `factor` and with the same voxels. Removed voxels stay
@@ -202,7 +297,10 @@ impl<D: Dim> VoxelGrid<D> {
         let are_solid = |(&gone, &material): (&bool, &u8)| !gone || material != 0;
         let gone = &self.removed;
         let is_known = gone.is_empty() || gone.len() == self.materials.len();
-        is_box && is_known && gone.iter().zip(&self.materials).all(are_solid)
+        let has_points = |grid: &Self| {
+            grid.surface.is_empty() || grid.surface.len() == skin::surface_count(grid)
+        };
+        is_box && is_known && has_points(self) && gone.iter().zip(&self.materials).all(are_solid)
     }
 
     fn checked_size(size: [usize; 3]) -> Result<Point, Error> {
@@ -233,6 +331,7 @@ impl<D: Dim> VoxelGrid<D> {
             voxel_size,
             materials,
             removed: Vec::new(),
+            surface: Vec::new(),
             dim: PhantomData,
         })
     }

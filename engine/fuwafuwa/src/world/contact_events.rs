@@ -206,7 +206,7 @@ impl<D: Dim> World<D> {
                 ObjectRef::Piece { body: id, piece },
                 ObjectRef::RigidBody(rigid),
             ];
-            let at = body.positions()[pair.node].xyz();
+            let at = body.skin_position(pair.node);
             sums.add(objects, parts_of(&pair.impulse), at, || {
                 self.rigids[rigid].shape().distance(at).1
             });

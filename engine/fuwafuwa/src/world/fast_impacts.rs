@@ -85,11 +85,11 @@ fn node_impacts<D: Dim>(
 ) -> Vec<(BodySlot, PieceId, Pace)> {
     let pace = |pair: &NodePair| {
         let (body, rigid) = (bodies.at(pair.body), rigids.at(pair.rigid));
-        let at = body.positions()[pair.node].xyz();
+        let at = body.skin_position(pair.node);
         let least = MAX_CLOSING * body.grid().voxel_size();
         let least = least.min(rigid.shape().inner_radius());
         let frame = Row::from(rigid.velocity_near(at));
-        let relative = body.velocities()[pair.node] - frame;
+        let relative = body.skin_velocity(pair.node) - frame;
         if is_within::<D>(relative * duration, least) {
             return None;
         }

@@ -131,6 +131,11 @@ pub struct VoxelsText {
     /// Run lengths of materials, the first axis fastest: `"12x0 4x1"` is 12 empty voxels, then 4 of material
     /// 1.
     pub runs: String,
+    /// Smooth surface, if it is known: the bytes of
+    /// [`VoxelGrid::surface_offsets`](fuwafuwa::VoxelGrid::surface_offsets) in base64. By default, the surface is
+    /// smoothed from the voxels.
+    #[serde(default)]
+    pub surface: Option<String>,
 }
 
 /// Contact layers as bit masks; see [`fuwafuwa::Layers`].

@@ -5,6 +5,8 @@ use super::budget::Budget;
 use super::error::{FieldError, require, shortened};
 use super::shapes::ShapeChoice;
 use crate::import::{Colours, FilePosition, FileType, Model, Picture, in_file, unexpected};
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::MAX_EXTENT;
 use fuwafuwa::inspect::points_in;
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Error, Shape, VoxelGrid};
@@ -47,7 +49,12 @@ pub(super) fn of<D: Dim>(text: &BodyText, budget: &mut Budget) -> Result<VoxelGr
     }
     budget.take_voxels(count, voxels.solid_count())?;
     let grid = VoxelGrid::from_materials(voxels.size, voxels.voxel_size, voxels.materials);
-    grid.map_err(|error| FieldError::new("part", error))
+    let grid = grid.map_err(|error| FieldError::new("part", error))?;
+    match voxels.surface {
+        Some(offsets) => { grid.with_surface_offsets(offsets) }
+            .map_err(|error| FieldError::new("voxels.surface", error)),
+        None => Ok(grid),
+    }
 }
 
 /// Voxels of a grid before its parts change them.
@@ -55,6 +62,8 @@ struct Voxels {
     size: [usize; 3],
     voxel_size: f32,
     materials: Vec<u8>,
+    /// Offsets of the smooth surface, if it is known.
+    surface: Option<Vec<i8>>,
 }
 
 impl Voxels {
@@ -65,6 +74,7 @@ impl Voxels {
             size: grid.size().map(|extent| extent as usize),
             voxel_size,
             materials: materials.collect(),
+            surface: grid.surface_offsets().map(<[i8]>::to_vec),
         }
     }
 
@@ -80,6 +90,10 @@ impl Voxels {
             let centre = VoxelGrid::<D>::centre(voxel, self.voxel_size);
             let centre = D::Vector::from_vec3(centre);
             if is_meant && part.shape.distance(centre).0 < 0.0 {
+                // The known surface is that of another shape.
+                if (*material == 0) != (part.material == 0) {
+                    self.surface = None;
+                }
                 *material = part.material;
             }
         }
@@ -188,10 +202,16 @@ fn of_voxels<D: Dim>(text: &VoxelsText, budget: &Budget) -> Result<Voxels, Field
     let found = materials.len();
     let reason = format!("expected {count} voxels, found {found}");
     require(found == count, "runs", reason)?;
+    let surface = text.surface.as_ref().map(|text| BASE64.decode(text));
+    let surface = surface.transpose();
+    let surface =
+        surface.map_err(|error| FieldError::new("surface", format!("expected base64: {error}")))?;
+    let offsets = |bytes: Vec<u8>| bytes.into_iter().map(u8::cast_signed).collect();
     Ok(Voxels {
         size: text.size,
         voxel_size: text.voxel_size,
         materials,
+        surface: surface.map(offsets),
     })
 }
 

@@ -44,10 +44,9 @@ impl SceneMaterials {
         if !self.are_tints_in(&grid) {
             return grid;
         }
-        let size = grid.size().map(|extent| extent as usize);
-        let numbers = grid.voxels().map(|voxel| self.number(grid.material(voxel)));
-        let merged = VoxelGrid::from_materials(size, grid.voxel_size(), numbers.collect());
-        merged.unwrap_or(grid)
+        let known = grid.clone();
+        let merged = grid.with_materials(|_, number| self.number(number));
+        merged.unwrap_or(known)
     }
 
     /// Returns the number of a material in the world. Empty voxels and missing materials keep their numbers.

@@ -6,6 +6,8 @@ use super::joint::{JointAnchorText, JointText};
 use super::rigid_body::RigidBodyText;
 use super::state;
 use super::{MAX_BODIES, MAX_MATERIALS, MAX_RIGID, MAX_TEXT_BYTES, Scene, SceneError};
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::{
     Dim, DimVector, Grading, Joint, JointAnchor, Law, Material, RigidBodyHandle, SoftBody,
     SoftBodyHandle, Vec3, Velocity, VoxelGrid, World, WorldConfig, snapshot,
@@ -166,6 +168,10 @@ fn by_fields<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
     let size = grid.size().map(|extent| extent as usize);
     let materials = grid.voxels().map(|voxel| grid.material(voxel));
     let whole = VoxelGrid::from_materials(size, grid.voxel_size(), materials.collect());
+    let whole = match grid.surface_offsets() {
+        Some(offsets) => whole.ok()?.with_surface_offsets(offsets.to_vec()),
+        None => whole,
+    };
     let made = SoftBody::with_options(whole.ok()?, body.materials(), body.law(), grading).ok()?;
     if !made.mesh().is_same_as(body.mesh()) {
         return None;
@@ -180,6 +186,10 @@ fn by_fields<D: Dim>(body: &SoftBody<D>) -> Option<(BodyText, SoftBody<D>)> {
             size,
             voxel_size: grid.voxel_size(),
             runs: String::new(),
+            surface: grid.surface_offsets().map(|offsets| {
+                let bytes = offsets.iter().map(|offset| offset.cast_unsigned());
+                BASE64.encode(bytes.collect::<Vec<u8>>())
+            }),
         }),
         at: at.to_vec3().to_array(),
         velocity: velocity.to_vec3().to_array(),

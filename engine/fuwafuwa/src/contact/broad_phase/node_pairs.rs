@@ -22,6 +22,10 @@ const SLACK: f32 = 0.4;
 /// strongly.
 const RIGID_SLACK: f32 = 1.0;
 
+/// Factor by which the distance between a node and its point of the smooth surface may grow in a stretched
+/// element.
+const STRETCHED: f32 = 1.25;
+
 /// Width of a bin of nodes [voxels]. A rigid shape is first tested against whole bins, and only in nearby
 /// bins against each node.
 const BIN_WIDTH: f32 = 4.0;
@@ -196,7 +200,7 @@ impl NodePairs {
         for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
             let is_near = |&&(slot, node): &&(BodySlot, NodeId)| {
                 let body = bodies.at(slot);
-                let reach = self.reach(slot, node, body.grid().voxel_size());
+                let reach = self.reach(slot, node, body);
                 let at = body.positions()[node].xyz();
                 rigid.meets(body.layers())
                     && body.mesh().is_alive(node)
@@ -240,7 +244,7 @@ impl NodePairs {
             for &node in body.awake_nodes() {
                 self.anchor(slot, node, bodies, left);
             }
-            let reach = |node| self.reach(slot, node, body.grid().voxel_size());
+            let reach = |node| self.reach(slot, node, body);
             node_bins.push((slot, body, NodeBins::of(body, reach)));
         }
         let mut found = Vec::new();
@@ -252,8 +256,8 @@ impl NodePairs {
                 near.clear();
                 node_bins.within(leeway.allowed, rigid.shape(), &mut near);
                 if rigid.moves() && body.awake_nodes().len() < body.mesh().node_count() {
-                    let reach = leeway.allowed + MARGIN * body.grid().voxel_size();
                     let is_near = |&node: &NodeId| {
+                        let reach = leeway.allowed + margin(body, node);
                         let at = body.positions()[node].xyz();
                         body.pieces().sleeps(node) && rigid.shape().distance(at).0 <= reach
                     };
@@ -310,10 +314,9 @@ impl NodePairs {
         };
     }
 
-    /// Returns the distance from a resting rigid shape within which a node is paired with that shape [m];
-    /// `size` is the voxel size [m].
-    fn reach(&self, body: BodySlot, node: NodeId, size: f32) -> f32 {
-        self.anchors[body][node][3] + MARGIN * size
+    /// Returns the distance from a resting rigid shape within which a node is paired with that shape [m].
+    fn reach<D: Dim>(&self, slot: BodySlot, node: NodeId, body: &SoftBody<D>) -> f32 {
+        self.anchors[slot][node][3] + margin(body, node)
     }
 
     /// Replaces the list by the `found` pairs and those old pairs for which `stays` is true. Pairs that were
@@ -339,6 +342,13 @@ impl NodePairs {
         }
         self.list.extend(old.filter(stays));
     }
+}
+
+/// Returns the distance from a rigid shape within which a node can touch the shape [m]: the node's point of the
+/// smooth surface may be closer than the node.
+fn margin<D: Dim>(body: &SoftBody<D>, node: NodeId) -> f32 {
+    let offset = STRETCHED * body.skin_point(node).reach();
+    (MARGIN + offset) * body.grid().voxel_size()
 }
 
 /// Sort key of a pair: rigid body, soft body and node.

@@ -23,7 +23,8 @@ pub type Sleeper = (BodySlot, PieceId);
 /// Returns the boxes [m] around those pieces of a body for which `is_one` is true, enlarged by the contact
 /// margin.
 pub fn bounds_of<D: Dim>(body: &SoftBody<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {
-    let margin = Vec3::splat(MARGIN * body.grid().voxel_size());
+    // The smooth surface is up to a voxel outside the nodes.
+    let margin = Vec3::splat((1.0 + MARGIN) * body.grid().voxel_size());
     let pieces = body.piece_views().into_iter();
     let pieces = pieces.filter(|piece| !piece.removed && is_one(piece.number));
     let bounds = pieces.map(|piece| [piece.low - margin, piece.high + margin]);
@@ -51,7 +52,7 @@ pub fn supported_by_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) ->
     for (slot, body) in bodies.by_slot() {
         let reach = MARGIN * body.grid().voxel_size();
         let is_near = |node: NodeId| {
-            let at = body.positions()[node].xyz();
+            let at = body.skin_position(node);
             body.pieces().sleeps(node) && rigid.shape().distance(at).0 <= reach
         };
         let nodes = body.mesh().nodes().map(|(node, _)| node);

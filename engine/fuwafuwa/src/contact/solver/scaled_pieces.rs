@@ -1,6 +1,6 @@
 //! Pieces with scaled mass in the contact solver: their responses as a whole; see [`PieceResponse`].
 
-use super::contact_sides::{NodeRow, SphereNodeRows};
+use super::contact_sides::{NodeContact, NodeRow, SphereNodeRows};
 use crate::contact::broad_phase::{ContactSphere, mean};
 use crate::foundation::arena::BodySlot;
 use crate::foundation::dim::Dim;
@@ -84,21 +84,22 @@ impl ScaledPieces {
         }
     }
 
-    /// Returns the velocity of a node that impulses on its piece have caused [m/s].
+    /// Returns the velocity at a contact of a node that impulses on its piece have caused [m/s].
     #[inline(never)]
-    pub fn velocity_of_node<D: Dim>(&self, row: NodeRow) -> Row {
-        match self.of_row[row] {
+    pub fn velocity_of_node<D: Dim>(&self, contact: &NodeContact) -> Row {
+        match self.of_row[contact.node] {
             UNSCALED => Row::ZERO,
-            piece => self.responses[piece as usize].velocity_at::<D>(self.offsets[row]),
+            piece => self.responses[piece as usize].velocity_at::<D>(contact.mean(&self.offsets)),
         }
     }
 
-    /// Adds an impulse on a node to its piece.
+    /// Adds an impulse at a contact of a node to its piece.
     #[inline(never)]
-    pub fn push_node<D: Dim>(&mut self, row: NodeRow, impulse: Row) {
-        let piece = self.of_row[row];
+    pub fn push_node<D: Dim>(&mut self, contact: &NodeContact, impulse: Row) {
+        let piece = self.of_row[contact.node];
         if piece != UNSCALED {
-            self.responses[piece as usize].push::<D>(self.offsets[row], impulse);
+            let offset = contact.mean(&self.offsets);
+            self.responses[piece as usize].push::<D>(offset, impulse);
         }
     }
 

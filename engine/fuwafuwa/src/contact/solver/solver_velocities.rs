@@ -9,6 +9,7 @@ use crate::foundation::ids::{Id, IndexVec, NodeId};
 use crate::rigid_body::RigidBodies;
 use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
+use crate::soft_body::skin_point;
 use glam::Vec3;
 
 /// Number of nodes in a chunk of `SolverVelocities`. A chunk with any node in contact is copied as a whole.
@@ -133,12 +134,12 @@ impl SolverVelocities {
     /// Returns the velocity of a node relative to the rigid body that it touches [m/s].
     #[inline(always)]
     pub fn relative_of_node<D: Dim>(&self, row: &NodeContact, rigids: &RigidBodies) -> Row {
-        let own = self.rows[row.node];
+        let own = row.mean(&self.rows);
         let other = row.mover.map_or(Row::ZERO, |mover| velocity(mover, rigids));
         let relative = with_fourth(own - other, 0.0);
         match self.scaled.is_empty() {
             true => relative,
-            false => relative + self.scaled.velocity_of_node::<D>(row.node),
+            false => relative + self.scaled.velocity_of_node::<D>(row),
         }
     }
 
@@ -151,11 +152,20 @@ impl SolverVelocities {
         impulse: Row,
         duration: f32,
     ) {
+        // The fourth component is the inverse mass of the node, which no impulse changes.
+        let impulse = with_fourth(impulse, 0.0);
+        let mut own_weight = 1.0;
+        if let Some((neighbours, weights)) = row.neighbours {
+            own_weight = skin_point::own_weight(weights);
+            for axis in 0..3 {
+                let other = &mut self.rows[neighbours[axis]];
+                *other += impulse * (weights[axis] * other[3]);
+            }
+        }
         let own = &mut self.rows[row.node];
-        *own += impulse * own[3];
+        *own += impulse * (own_weight * own[3]);
         if !self.scaled.is_empty() {
-            self.scaled
-                .push_node::<D>(row.node, with_fourth(impulse, 0.0));
+            self.scaled.push_node::<D>(row, impulse);
         }
         if let Some(mover) = row.mover {
             push(mover, rigids, -impulse, duration);

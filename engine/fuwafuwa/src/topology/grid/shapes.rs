@@ -22,13 +22,14 @@ impl<D: Dim> VoxelGrid<D> {
         // × 2 grid are 0.87 from its centre, so all eight voxels are solid. Larger balls have a radius of at
         // least 1.
         let radius = (centre - 0.5).max(0.9);
-        Self::from_fn(Self::cube_size(n), diameter / n as f32, |at| {
+        let grid = Self::from_fn(Self::cube_size(n), diameter / n as f32, |at| {
             let squared: f32 = at[..D::N]
                 .iter()
                 .map(|&k| (k as f32 + 0.5 - centre) * (k as f32 + 0.5 - centre))
                 .sum();
             u8::from(squared < radius * radius)
-        })
+        })?;
+        Ok(grid.with_distance(|at| (at - Self::middle_of([n; 3])).length() - radius))
     }
 
     /// Creates the square (2D) or cube (3D) of `n` voxels across `width` metres.
@@ -52,11 +53,16 @@ impl<D: Dim> VoxelGrid<D> {
         // of a ball.
         let outer = n as f32 - 1.0;
         let tube = 0.25 * outer;
-        Self::from_fn(size, diameter / n as f32, |voxel| {
+        let grid = Self::from_fn(size, diameter / n as f32, |voxel| {
             let [x, y, z] = Self::from_middle(voxel, size).to_array();
             let from_circle = (x * x + y * y).sqrt() - (outer - tube);
             u8::from(from_circle * from_circle + z * z < tube * tube)
-        })
+        })?;
+        Ok(grid.with_distance(|at| {
+            let [x, y, z] = (at - Self::middle_of(size)).to_array();
+            let from_circle = (x * x + y * y).sqrt() - 0.5 * (outer - tube);
+            (from_circle * from_circle + z * z).sqrt() - 0.5 * tube
+        }))
     }
 
     /// Creates a heart of `n` voxels across `width` metres, with the tip towards −y.
@@ -105,6 +111,13 @@ impl<D: Dim> VoxelGrid<D> {
 
     fn cube_size(n: usize) -> [usize; 3] {
         [n, n, D::depth(n)]
+    }
+
+    /// Returns the middle of a grid of `size` [voxels]; the third coordinate is 0 in 2D.
+    fn middle_of(size: [usize; 3]) -> Vec3 {
+        let mut middle = Vec3::from(size.map(|extent| 0.5 * extent as f32));
+        middle.as_mut()[D::N..].fill(0.0);
+        middle
     }
 
     /// Returns the offset of a voxel's centre from the middle of a grid of `size`, in half voxels, so that
