@@ -56,7 +56,8 @@ fn contacts_begin_and_end<D: Dim>() {
     let (mut began, mut ended) = (Vec::new(), 0);
     for tick in 0..500 {
         if tick == 450 {
-            world.translate(id, vector(0.0, 2.0, 0.0)).unwrap();
+            // It does not come back before the end.
+            world.translate(id, vector(0.0, 5.0, 0.0)).unwrap();
         }
         world.step();
         for event in world.events() {
@@ -81,7 +82,7 @@ fn contacts_begin_and_end<D: Dim>() {
     // A free fall by h = 1 m ends at the speed √(2 g h) = 4.43 m/s. The skin, half a voxel higher, falls a little
     // further and swings after the first touch.
     assert!(
-        (26..30).contains(&first) && (speed - 4.43).abs() < 0.4,
+        (26..30).contains(&first) && (speed - 4.43).abs() < 0.5,
         "{first} {speed}"
     );
     assert_eq!(

@@ -10,7 +10,7 @@ fn check_rest<D: Dim>() {
     let mut world = World::<D>::new(WorldConfig::default()).unwrap();
     let table = Shape::cuboid(D::Vector::splat(1.0)).translated(D::Vector::Y * -1.0);
     let table = world.add_rigid_body(RigidBody::kinematic(table)).unwrap();
-    let ball = VoxelGrid::<D>::ball(8, 0.5).unwrap();
+    let ball = VoxelGrid::<D>::ball(12, 0.5).unwrap();
     let ball = SoftBody::new(ball, &[Material::default()]).unwrap();
     let ball = ball.translated(D::Vector::Y * 0.01);
     let ball = world.add_soft_body(ball).unwrap();
@@ -20,11 +20,17 @@ fn check_rest<D: Dim>() {
         events.any(|event| matches!(event, Event::ContactEnded { .. }))
     };
     let (mut slept, mut ended) = (false, false);
-    for _ in 0..600 {
+    for _ in 0..900 {
         world.step();
         slept |= is_asleep(&world);
         ended |= slept && has_ended(&world);
     }
+    eprintln!(
+        "D{} asleep {} slept {slept} ended {ended} {:?}",
+        D::N,
+        is_asleep(&world),
+        world[ball].piece_views()[0]
+    );
     assert!(is_asleep(&world) && !ended);
     assert_eq!(world.contacts_of(ball).unwrap().count(), 1);
     for tick in 1..60 {

@@ -176,19 +176,13 @@ fn height<D: Dim>(
     for _ in 0..ticks(slower * scale.sqrt() as f32, width) {
         world.step();
     }
-    Ok((top(&world, body) / f64::from(width), scale))
+    let top = world[body].piece_views()[0].high[1];
+    Ok((f64::from(top) / f64::from(width), scale))
 }
 
 /// Returns the half-space below the origin.
 pub fn floor<D: Dim>() -> Shape<D> {
     Shape::half_space(D::Vector::from_vec3(Vec3::Y), D::Vector::ZERO)
-}
-
-/// Returns the height of the highest node [m].
-fn top<D: Dim>(world: &World<D>, body: SoftBodyHandle) -> f64 {
-    let nodes = world[body].mesh().nodes();
-    let heights = nodes.map(|(id, _)| f64::from(world[body].node_state(id).0[1]));
-    heights.fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// Pulls at both ends of a bar until it tears. Returns the largest load, relative to strength × section, and the

@@ -194,9 +194,8 @@ fn press(case: Case, depths: &[f32]) -> Result<Vec<(f64, f64)>> {
             for &body in bodies.iter().filter(|_| balls > 1) {
                 let momentum = world[body].momentum().linear.as_vec3();
                 let upwards = momentum.y / world[body].total_mass() as f32;
-                world.set_velocity(body, Vec3::Y * upwards)?;
                 let at = centre(&world[body]).as_vec3();
-                world.translate(body, Vec3::new(-at.x, 0.0, -at.z))?;
+                world.set_velocity(body, Vec3::new(-10.0 * at.x, upwards, -10.0 * at.z))?;
             }
             world.step();
             if tick + MEAN >= moving + settling {

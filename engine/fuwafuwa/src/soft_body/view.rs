@@ -7,7 +7,7 @@ use crate::rigid_body::shape::Shape;
 use crate::soft_body::SoftBody;
 use crate::topology::element_class::{slot_at, slot_index};
 use crate::topology::mesh::Element;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Summary of a piece.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -20,9 +20,9 @@ pub struct PieceView {
     pub centre: Vec3,
     /// Velocity of the centre of mass [m/s].
     pub velocity: Vec3,
-    /// Lowest coordinate of the nodes along each axis [m].
+    /// Lowest coordinate of the smooth surface along each axis [m].
     pub low: Vec3,
-    /// Highest coordinate of the nodes along each axis [m].
+    /// Highest coordinate of the smooth surface along each axis [m].
     pub high: Vec3,
     /// Number of elements.
     pub element_count: u32,
@@ -184,28 +184,34 @@ impl<D: Dim> SoftBody<D> {
         };
         let pieces = &self.topology.pieces;
         let mut views: Vec<PieceView> = pieces.list.entries().map(none).collect();
+        // Far from the origin, the rounding of sums in single precision would be noticeable.
+        let mut sums = vec![(0.0f64, DVec3::ZERO, DVec3::ZERO); views.len()];
         for (id, _) in self.topology.mesh.elements() {
             views[pieces.of_element(id).index()].element_count += 1;
         }
         for (id, _) in self.topology.mesh.nodes() {
-            let (at, velocity) = (self.state.position[id].xyz(), self.state.velocity[id].xyz());
-            let mass = self.state.mass[id];
-            let view = &mut views[pieces.of_node(id).index()];
-            view.mass += mass;
-            view.centre += at * mass;
-            view.velocity += velocity * mass;
+            let piece = pieces.of_node(id).index();
+            let of_node = |rows: &IndexVec<NodeId, Row>| rows[id].xyz().as_dvec3();
+            let node_mass = f64::from(self.state.mass[id]);
+            let (mass, centre, velocity) = &mut sums[piece];
+            *mass += node_mass;
+            *centre += of_node(&self.state.position) * node_mass;
+            *velocity += of_node(&self.state.velocity) * node_mass;
+            let view = &mut views[piece];
+            let surface = self.skin_position(id);
             for axis in 0..3 {
-                view.low[axis] = view.low[axis].min(at[axis]);
-                view.high[axis] = view.high[axis].max(at[axis]);
+                view.low[axis] = view.low[axis].min(surface[axis]);
+                view.high[axis] = view.high[axis].max(surface[axis]);
             }
         }
-        for view in &mut views {
+        for (view, (mass, centre, velocity)) in views.iter_mut().zip(sums) {
             if view.removed {
                 (view.low, view.high) = (Vec3::ZERO, Vec3::ZERO);
                 continue;
             }
-            view.centre *= 1.0 / view.mass;
-            view.velocity *= 1.0 / view.mass;
+            view.mass = mass as f32;
+            view.centre = (centre / mass).as_vec3();
+            view.velocity = (velocity / mass).as_vec3();
         }
         views
     }

@@ -23,8 +23,7 @@ pub type Sleeper = (BodySlot, PieceId);
 /// Returns the boxes [m] around those pieces of a body for which `is_one` is true, enlarged by the contact
 /// margin.
 pub fn bounds_of<D: Dim>(body: &SoftBody<D>, is_one: impl Fn(PieceId) -> bool) -> Vec<Bounds> {
-    // The smooth surface is up to a voxel outside the nodes.
-    let margin = Vec3::splat((1.0 + MARGIN) * body.grid().voxel_size());
+    let margin = Vec3::splat(MARGIN * body.grid().voxel_size());
     let pieces = body.piece_views().into_iter();
     let pieces = pieces.filter(|piece| !piece.removed && is_one(piece.number));
     let bounds = pieces.map(|piece| [piece.low - margin, piece.high + margin]);
