@@ -3,7 +3,6 @@
 use crate::elements::ElementMesh;
 use crate::frame::{Frame, Look};
 use crate::palette::bytes;
-use crate::rest::Rest;
 use crate::rigid::RigidShapes;
 use crate::rings::Outlines;
 use crate::skin::SkinMesh;
@@ -23,7 +22,6 @@ pub struct Geometry {
     /// Bounding box of all bodies as low and high corner [m]. Without bodies low is above high.
     pub(crate) bounds: [Vec2; 2],
     rings: Outlines,
-    rests: Vec<Rest>,
 }
 
 /// Index ranges of a body in the triangles of the skin.
@@ -48,8 +46,6 @@ impl Geometry {
         let radii = world.soft_bodies().map(|(_, body)| radius(body));
         self.radius = radii.fold(0.0, f32::max);
         self.bounds = NOWHERE;
-        self.rests
-            .resize_with(world.soft_bodies().count(), Rest::default);
         for (place, (_, body)) in world.soft_bodies().enumerate() {
             match frame.look {
                 Look::Skin => self.add_skin(place, body, frame),
@@ -73,12 +69,8 @@ impl Geometry {
     }
 
     fn add_skin(&mut self, place: usize, body: &SoftBody<Dim2>, frame: &Frame<'_>) {
-        let rest = &mut self.rests[place];
         let numbers = frame.numbers(place, body);
-        if !rest.matches_grid(body.grid()) {
-            *rest = Rest::new(body.grid());
-        }
-        self.rings.trace(body, rest);
+        self.rings.trace(body);
         let start = self.skin.fans.len() as u32;
         self.skin.add(&self.rings, body.grid().voxel_size());
         let middle = self.skin.fans.len() as u32;
@@ -87,9 +79,9 @@ impl Geometry {
         self.bounds = bounds.into_iter().fold(self.bounds, around);
         let colour = |number| bytes(frame.colour(number), 1.0);
         let is_tinted = !std::ptr::eq(numbers, body.grid());
-        let first = match is_tinted {
+        let first = match is_tinted || body.materials().len() > 1 {
             true => most_frequent(numbers),
-            false => rest.first_material(),
+            false => 1,
         };
         self.skin.add_rectangle(bounds, colour(first));
         if is_tinted {

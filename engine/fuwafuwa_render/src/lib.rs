@@ -8,11 +8,10 @@
 //! Data flow in 2D:
 //!
 //! 1. The caller provides a [`palette`] and a [`frame`].
-//! 2. `stairs` and `rest` smooth the shape of a body at rest.
-//! 3. `rings` traces the current smooth outlines.
-//! 4. `skin`, `elements` and `rigid` turn a world into vertices, without a GPU.
-//! 5. [`geometry`] collects the vertices.
-//! 6. `gpu` draws them.
+//! 2. `rings` traces the outlines of the smooth surface, which the engine knows.
+//! 3. `skin`, `elements` and `rigid` turn a world into vertices, without a GPU.
+//! 4. [`geometry`] collects the vertices.
+//! 5. `gpu` draws them.
 //!
 //! [`anchor`] and [`ages`] help callers that paint on top.
 //!
@@ -20,7 +19,7 @@
 //! camera, skin and renderer, because a surface cannot be handled like an outline.
 //!
 //! To draw with another renderer, disable the default feature `gpu` and use the vertices, for example those
-//! of [`space::Skin`]. [`Rest`] smooths the voxel staircase of a 2D shape.
+//! of [`space::Skin`].
 //!
 //! The limits of WebGL2, `wgpu::Limits::downlevel_webgl2_defaults`, are sufficient.
 #![deny(unsafe_code)]
@@ -36,12 +35,10 @@ pub mod geometry;
 #[cfg(feature = "gpu")]
 mod gpu;
 pub mod palette;
-mod rest;
 mod rigid;
 mod rings;
 mod skin;
 pub mod space;
-mod stairs;
 
 pub use ages::Ages;
 pub use anchor::{Anchor, anchor, anchor_at};
@@ -56,5 +53,4 @@ pub use gpu::image::{ImageError, ImageStage, image, image_async, pass_into};
 #[cfg(feature = "gpu")]
 pub use gpu::targets::new_image;
 pub use palette::{Colour, Palette};
-pub use rest::Rest;
 pub use rings::{OutlinePoint, Outlines, Span};

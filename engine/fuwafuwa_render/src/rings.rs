@@ -2,15 +2,14 @@
 //!
 //! A ring of exposed voxel sides becomes a smooth curve in three steps:
 //!
-//! 1. Every point moves by its offset at rest, carried along by the deformation of its voxel. The offset of a
-//!    torn side is a roughness, because cracks run along the sides of voxels.
+//! 1. Every point moves onto the smooth surface that contacts see ([`SoftBody::skin_position`]). Points of a torn
+//!    side get a roughness instead, because cracks run along the sides of voxels.
 //! 2. Corners are smoothed, torn ones only a little. The result is the control polygon of a quadratic
 //!    B-spline.
 //! 3. The spline is sampled, more densely around corners.
 //!
 //! Both faces of a crack are smoothed alike, so that a closed crack stays closed.
 
-use crate::rest::{Rest, SMALL};
 use fuwafuwa::IndexVec;
 use fuwafuwa::{Dim2, NodeId, SoftBody};
 use glam::Vec2;
@@ -80,6 +79,8 @@ struct Control {
 }
 
 const NONE: u32 = u32::MAX;
+/// Number of sides below which an outline is not smoothed: it has no staircase, only corners.
+const SMALL: usize = 12;
 /// Number of smoothing rounds for points of the original surface; `TORN_ROUNDS` is the number for torn
 /// points.
 const SURFACE_ROUNDS: usize = 4;
@@ -87,10 +88,10 @@ const TORN_ROUNDS: usize = 1;
 
 impl Outlines {
     /// Computes the curves of a body.
-    pub fn trace(&mut self, body: &SoftBody<Dim2>, rest: &Rest) {
+    pub fn trace(&mut self, body: &SoftBody<Dim2>) {
         self.points.clear();
         self.spans.clear();
-        self.gather_sides(body, rest);
+        self.gather_sides(body);
         for first in 0..self.sides.len() {
             self.gather_ring(first);
             if !self.ring.is_empty() {
@@ -100,8 +101,8 @@ impl Outlines {
         }
     }
 
-    fn gather_sides(&mut self, body: &SoftBody<Dim2>, rest: &Rest) {
-        let (mesh, grid) = (body.mesh(), body.grid());
+    fn gather_sides(&mut self, body: &SoftBody<Dim2>) {
+        let (mesh, size) = (body.mesh(), body.grid().voxel_size());
         self.sides.clear();
         self.side_from_node.clear();
         self.side_from_node.resize(mesh.node_capacity(), NONE);
@@ -112,18 +113,22 @@ impl Outlines {
             let corner = |index: usize| body.node_state(element.nodes[index]).0;
             let (right, up) = sides([0, 1, 2, 3].map(corner));
             let [from, to] = [0, 1].map(|end| mesh.node(facet.nodes[end]).at);
-            let offsets = match facet.is_torn {
-                true => [from, to].map(roughness),
-                false => rest.offsets(grid, element.cell.at, [to[0] - from[0], to[1] - from[1]]),
+            let carried = |by: Vec2| by.x * right + by.y * up;
+            let moved = match facet.is_torn {
+                true => [from, to].map(|at| carried(roughness(at))),
+                false => [0, 1].map(|end| {
+                    let surface = body.skin_position(facet.nodes[end]);
+                    (surface - facet.corners[end]).truncate()
+                }),
             };
             self.side_from_node[facet.nodes[0]] = self.sides.len() as u32;
             self.sides.push(Side {
                 to: facet.nodes[1],
                 next: NONE,
                 start: facet.corners[0].truncate(),
-                moved: offsets.map(|by| by.x * right + by.y * up),
+                moved,
                 is_fresh: facet.is_torn,
-                strain: strain(right, up, grid.voxel_size()),
+                strain: strain(right, up, size),
                 grain: grain(from),
             });
         }
@@ -288,7 +293,7 @@ mod tests {
     fn rings(world: &World<Dim2>) -> Outlines {
         let (_, body) = world.soft_bodies().next().unwrap();
         let mut rings = Outlines::default();
-        rings.trace(body, &Rest::new(body.grid()));
+        rings.trace(body);
         rings
     }
 

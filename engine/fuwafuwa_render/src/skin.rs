@@ -213,7 +213,6 @@ fn byte(share: f32) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rest::Rest;
     use fuwafuwa::{Material, VoxelGrid};
 
     #[test]
@@ -221,7 +220,7 @@ mod tests {
         let grid = VoxelGrid::ball(16, 1.0).unwrap();
         let body = SoftBody::new(grid, &[Material::default()]).unwrap();
         let mut rings = Outlines::default();
-        rings.trace(&body, &Rest::new(body.grid()));
+        rings.trace(&body);
         let enclosed: f32 = rings.spans.iter().map(|span| span.area).sum();
         let mut mesh = SkinMesh::default();
         mesh.add(&rings, 1.0 / 16.0);

@@ -25,9 +25,9 @@ const BODIES: [(usize, usize, f32); 6] = [
 const SPEEDS: [f32; 4] = [10.0, 30.0, 60.0, 300.0];
 /// Thickness of the plate [m].
 const PLATE: f32 = 0.02;
-/// Maximum distance by which a node enters the plate [m]. The plate pushes nodes out to the nearer side.
+/// Maximum distance by which the surface of a body enters the plate [m]. The plate pushes it out to the nearer side.
 const ENTERED: f64 = 0.4 * PLATE as f64;
-/// Distance from which the bodies start [m].
+/// Distance from which bodies start [m]; small ones start within half the range of positions of their voxels.
 const DISTANCE: f32 = 2.0;
 /// Maximum change of the momentum of two bodies that hit each other, relative to the momentum of one body.
 /// Bodies of 2 mm that meet 1 m from the origin lose a percent by rounding.
@@ -147,25 +147,30 @@ fn add_ball<D: Dim>(
     Ok(body)
 }
 
-/// Steps for as long as a body at `speed` needs for twice the distance, and half a second. `look` is called after
-/// each tick. Returns the number of events of slowed impacts, and the distance of a substep [m].
+/// Returns the distance from which bodies of `n` voxels across `width` [m] start [m].
+fn distance(n: usize, width: f32) -> f32 {
+    DISTANCE.min(4096.0 * width / n as f32)
+}
+
+/// Steps for twice the time `flight` [s], and half a second. `look` is called after each tick. Returns the number of
+/// events of slowed impacts, and the duration of a substep [s].
 fn run<D: Dim>(
     world: &mut World<D>,
-    speed: f32,
+    flight: f32,
     mut look: impl FnMut(&mut World<D>),
 ) -> Result<(f64, f32)> {
-    let ticks = (120.0 * DISTANCE / speed) as usize + 30;
-    let (mut slowed, mut moved) = (0, 0.0);
+    let ticks = (120.0 * flight) as usize + 30;
+    let (mut slowed, mut substep) = (0, 0.0);
     for _ in 0..ticks {
         let report = world.step();
         ensure!(report.quarantined == 0, "a body was quarantined");
-        moved = speed / (60 * report.substeps) as f32;
+        substep = 1.0 / (60 * report.substeps) as f32;
         let events = world.events().iter();
         let events = events.filter(|event| matches!(event, Event::ImpactSlowed { .. }));
         slowed += events.count();
         look(world);
     }
-    Ok((slowed as f64, moved))
+    Ok((slowed as f64, substep))
 }
 
 /// Throws a ball at a plate.
@@ -176,18 +181,18 @@ fn on_plate<D: Dim>(n: usize, width: f32, speed: f32, treatment: StiffBodies) ->
         half: vector::<D>(3.0, 0.5 * PLATE, 3.0),
     };
     world.add_rigid_body(RigidBody::fixed(plate))?;
-    let at = [0.013 * width, DISTANCE + 0.5 * width];
+    let distance = distance(n, width);
+    let at = [0.013 * width, distance + 0.5 * width];
     let body = add_ball(&mut world, n, width, at, -speed)?;
     let mut entered = 0.0f64;
-    let (slowed, moved) = run(&mut world, speed, |world| {
-        let nodes = world[body].mesh().nodes();
-        let heights = nodes.map(|(id, _)| world[body].node_state(id).0.to_vec3().y);
-        let lowest = heights.fold(f32::INFINITY, f32::min);
-        entered = entered.max(f64::from(-lowest));
+    let (slowed, substep) = run(&mut world, distance / speed, |world| {
+        let pieces = world[body].piece_views().into_iter();
+        let lowest = pieces.map(|piece| piece.low.y);
+        entered = entered.max(f64::from(-lowest.fold(f32::INFINITY, f32::min)));
     })?;
     Ok(Impact {
         entered,
-        is_fast: moved > (width / n as f32).min(0.5 * PLATE),
+        is_fast: speed * substep > (width / n as f32).min(0.5 * PLATE),
         slowed,
         ..Impact::default()
     })
@@ -201,7 +206,8 @@ fn on_each_other<D: Dim>(
     treatment: StiffBodies,
 ) -> Result<Impact> {
     let mut world = world::<D>(treatment)?;
-    let apart = 0.5 * (DISTANCE + width);
+    let distance = distance(n, width);
+    let apart = 0.5 * (distance + width);
     let balls = [
         add_ball(&mut world, n, width, [0.0, apart], -0.5 * speed)?,
         add_ball(&mut world, n, width, [0.03 * width, -apart], 0.5 * speed)?,
@@ -215,7 +221,7 @@ fn on_each_other<D: Dim>(
     };
     let before = total(&world);
     let (mut entered, mut momentum) = (0.0f64, 0.0f64);
-    let (slowed, moved) = run(&mut world, speed, |world| {
+    let (slowed, substep) = run(&mut world, distance / speed, |world| {
         let apart = centre(&world[balls[0]]).y - centre(&world[balls[1]]).y;
         entered = entered.max(1.0 - apart / f64::from(width));
         momentum = momentum.max((total(world) - before).length() / one);
@@ -224,7 +230,7 @@ fn on_each_other<D: Dim>(
         balls.map(|ball| world[ball].momentum().linear.y / world[ball].total_mass());
     Ok(Impact {
         entered,
-        is_fast: moved > width / n as f32,
+        is_fast: speed * substep > width / n as f32,
         slowed,
         approach: (lower - upper) / f64::from(speed),
         momentum,

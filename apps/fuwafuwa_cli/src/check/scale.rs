@@ -9,8 +9,8 @@ use super::parallel;
 use crate::report::{Outcome, Progress};
 use anyhow::{Result, bail};
 use fuwafuwa::{
-    Damping, Dim, Dim2, Dim3, DimVector, Hooks, Material, RigidBody, Shape, SoftBody,
-    SoftBodyHandle, StiffBodies, Vec2, Vec3, VoxelGrid, World, WorldConfig,
+    Damping, Dim, Dim2, Dim3, DimVector, Hooks, Material, RigidBody, Shape, SoftBody, StiffBodies,
+    Vec2, Vec3, VoxelGrid, World, WorldConfig,
 };
 use std::cell::{Cell, RefCell};
 
@@ -154,7 +154,8 @@ fn ticks(slower: f32, width: f32) -> u32 {
     (60.0 * (REST * slower + HOPS * width.sqrt())).ceil() as u32 + 12
 }
 
-/// Returns the height at rest of a disc or ball on a floor [widths], and its mass scale. Young's modulus is
+/// Returns the height at rest of a disc or cube on a floor [widths], and its mass scale. A ball would come to rest
+/// with another side below at each size. Young's modulus is
 /// `stiffer` times the default.
 fn height<D: Dim>(
     n: usize,
@@ -171,7 +172,11 @@ fn height<D: Dim>(
     material.elasticity.young *= stiffer;
     let mut world = world::<D>(treatment, true)?;
     world.add_rigid_body(RigidBody::fixed(floor()))?;
-    let body = world.add_soft_body(SoftBody::new(VoxelGrid::ball(n, width)?, &[material])?)?;
+    let grid = match D::N {
+        2 => VoxelGrid::ball(n, width)?,
+        _ => VoxelGrid::cube(n, width)?,
+    };
+    let body = world.add_soft_body(SoftBody::new(grid, &[material])?)?;
     let scale = world[body].mass_scale();
     for _ in 0..ticks(slower * scale.sqrt() as f32, width) {
         world.step();

@@ -1,7 +1,7 @@
 //! Points of the smooth surface that belong to the nodes of a body.
 
 use super::SoftBody;
-use crate::foundation::dim::{Dim, voxel_around};
+use crate::foundation::dim::{Dim, Point, voxel_around};
 use crate::foundation::ids::{IndexVec, NodeId};
 use crate::soft_body::element_forces::Row;
 use glam::Vec3;
@@ -99,6 +99,12 @@ impl<D: Dim> SoftBody<D> {
     /// If the id was never used.
     pub fn skin_position(&self, node: NodeId) -> Vec3 {
         self.skin_row(node).xyz()
+    }
+
+    /// Offset of the smooth surface from a lattice point of the undeformed grid [voxels]. Zero away from the original
+    /// surface. A deformed body carries its offsets along, see [`SoftBody::skin_position`].
+    pub fn skin_offset(&self, at: Point) -> Vec3 {
+        self.cache.skin.offset(at)
     }
 
     #[inline(always)]

@@ -222,7 +222,7 @@ impl<D: Dim> World<D> {
         (overlap.depth > least * size).then_some(overlap)
     }
 
-    /// Adds the nodes of a piece that are inside a rigid body. If no node is inside, but the centre of the
+    /// Adds the points of the smooth surface at the nodes of a piece that are inside a rigid body. If no such point is inside, but the centre of the
     /// rigid body is in the piece, adds the way of that centre out of the piece.
     fn overlap_with_rigid(
         &self,
@@ -234,7 +234,7 @@ impl<D: Dim> World<D> {
         let shape = self.rigids[rigid].shape();
         let nodes = soft.mesh().nodes().map(|(node, _)| node);
         for node in nodes.filter(|&node| soft.pieces().of_node(node) == piece) {
-            let (gap, normal) = shape.distance(soft.positions()[node].xyz());
+            let (gap, normal) = shape.distance(soft.skin_position(node));
             if gap < 0.0 {
                 overlap.add(normal * -gap, -gap);
             }

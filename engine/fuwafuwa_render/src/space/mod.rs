@@ -1,7 +1,7 @@
 //! 3D worlds, with the same data flow as in 2D:
 //!
 //! 1. The caller adds a [`camera`] to a [`crate::Frame`].
-//! 2. `rest` smooths the shape of a body at rest.
+//! 2. `rest` has the smooth surface and the colours of a body at rest.
 //! 3. `faces` finds its bare faces.
 //! 4. [`skin`] computes the current smooth surface, and `stickers` the marks on it.
 //! 5. For the element view, `cut` computes the cut planes, and `boxes` the elements.

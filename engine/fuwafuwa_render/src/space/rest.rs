@@ -1,29 +1,12 @@
-//! Smoothing of the voxel staircase of a 3D shape, computed once for the body at rest.
+//! Surface of a 3D body at rest: the offset and the colours of each point, computed once.
 //!
-//! As in 2D, every point of the surface gets an offset, in voxels and in the frame of the body at rest; a
-//! deformed body carries the offsets along.
+//! Offsets are in voxels and in the frame of the body at rest; a deformed body carries them along.
 
-use crate::stairs::smoothed;
 use fuwafuwa::inspect::{Connectivity, Groups};
 use fuwafuwa::inspect::{add, corner, face_corners, points_in, voxel_around};
-use fuwafuwa::{Dim, Dim3, Point, VoxelGrid};
+use fuwafuwa::{Dim, Dim3, Point, SoftBody, VoxelGrid};
 use glam::Vec3;
 
-/// Variance of the smoothing [voxels²], as a multiple of the square root of the number of faces of the
-/// surface. The widest terraces of a voxelised ball grow with the same square root.
-const REACH: f32 = 0.45;
-/// Variance that one smoothing round adds on a flat surface [voxels²]. A round moves each point half-way to
-/// the mean of its four neighbours, two of which are one voxel away along each axis.
-const VARIANCE: f32 = 0.25;
-/// Maximum number of rounds; bounds the loading time of the largest bodies.
-const MAX_ROUNDS: usize = 200;
-/// Maximum offset of a point [voxels] where the body is thin and where it is thick, so that a protrusion of a
-/// few voxels survives.
-const FARTHEST: [f32; 2] = [0.3, 0.8];
-/// Fractions of solid voxels around a point, within `AROUND` voxels, at which the body counts as thin and as
-/// thick. This fraction is 0.5 on a flat surface and 0.25 on an edge or a limb three voxels wide.
-const SOLID: [f32; 2] = [0.22, 0.32];
-const AROUND: i32 = 3;
 /// Rounds of mixing material shares between neighbours. More rounds smooth longer stair steps of material
 /// borders.
 const TINT_ROUNDS: usize = 12;
@@ -39,7 +22,7 @@ const AROUND_INSIDE: [f32; 4] = [1.0, 3.0, 3.0, 1.0];
 /// faces may turn over.
 const ROUGHNESS: f32 = 0.45;
 
-/// Smoothing offsets of a voxel shape.
+/// Offsets and colours of the surface points of a body.
 #[derive(Clone, Debug, Default)]
 pub struct Rest {
     /// Index of the first entry in `points` by lattice point, or `NONE`.
@@ -60,7 +43,7 @@ struct RestPoint {
     at: Point,
     /// Voxels of the group, as a mask of octants.
     group: u8,
-    /// Smoothing offset [voxels].
+    /// Offset of the smooth surface [voxels].
     offset: Vec3,
     tint: Tint,
 }
@@ -103,8 +86,9 @@ impl TopMaterials {
 const NONE: u32 = u32::MAX;
 
 impl Rest {
-    /// Computes the offsets of a grid. `numbers` has the material numbers that decide the colours.
-    pub fn new(grid: &VoxelGrid<Dim3>, numbers: &VoxelGrid<Dim3>) -> Self {
+    /// Computes the surface of a body at rest. `numbers` has the material numbers that decide the colours.
+    pub fn new(body: &SoftBody<Dim3>, numbers: &VoxelGrid<Dim3>) -> Self {
+        let grid = body.grid();
         let sharing = Connectivity::new(grid);
         let materials = numbers.voxels().map(|voxel| numbers.material(voxel));
         let mut rest = Self {
@@ -123,18 +107,11 @@ impl Rest {
             rest.points.extend(groups.iter().map(|group| RestPoint {
                 at,
                 group,
-                offset: Vec3::ZERO,
+                offset: body.skin_offset(at),
                 tint: Tint::default(),
             }));
         }
-        let (neighbours, face_count) = rest.neighbours(grid);
-        let places: Vec<Vec3> = rest.points.iter().map(|point| place(point.at)).collect();
-        let variance = REACH * (face_count as f32).sqrt();
-        let rounds = ((variance / VARIANCE) as usize).min(MAX_ROUNDS);
-        let smooth = smoothed(&places, |places| blurred(places, &neighbours, rounds));
-        for (point, (&to, &from)) in rest.points.iter_mut().zip(smooth.iter().zip(&places)) {
-            point.offset = (to - from).clamp_length_max(farthest(grid, point.at));
-        }
+        let neighbours = rest.neighbours(grid);
         rest.find_tints(numbers, &neighbours);
         rest
     }
@@ -148,8 +125,8 @@ impl Rest {
         self.numbers.as_ref().or(self.grid.as_ref())
     }
 
-    /// Returns the offset of a point [voxels] as seen from the voxel in one of its octants: the smoothing
-    /// offset on the original surface, a pseudo-random roughness inside. Both faces of a crack get the same
+    /// Returns the offset of a point [voxels] as seen from the voxel in one of its octants: that of the smooth
+    /// surface on the original surface, a pseudo-random roughness inside. Both faces of a crack get the same
     /// offset.
     pub fn offset(&self, at: Point, octant: usize) -> Vec3 {
         match self.find(at, octant) {
@@ -218,10 +195,9 @@ impl Rest {
         }
     }
 
-    /// Returns the neighbours of each point along the edges of bare faces, and the number of these faces.
-    fn neighbours(&self, grid: &VoxelGrid<Dim3>) -> (Vec<Vec<u32>>, usize) {
+    /// Returns the neighbours of each point along the edges of bare faces.
+    fn neighbours(&self, grid: &VoxelGrid<Dim3>) -> Vec<Vec<u32>> {
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); self.points.len()];
-        let mut face_count = 0;
         for voxel in grid.voxels().filter(|&voxel| grid.is_solid(voxel)) {
             for face in 0..6 {
                 let mut beyond = voxel;
@@ -229,7 +205,6 @@ impl Rest {
                 if grid.is_solid(beyond) {
                     continue;
                 }
-                face_count += 1;
                 let ring = face_corners::<Dim3>(face)
                     .map(|vertex| self.find(add(voxel, corner(vertex)), 7 - vertex));
                 for k in 0..4 {
@@ -245,26 +220,8 @@ impl Rest {
                 }
             }
         }
-        (neighbours, face_count)
+        neighbours
     }
-}
-
-fn place(at: Point) -> Vec3 {
-    at.map(|k| k as f32).into()
-}
-
-/// Returns a surface after some rounds of moving every point half-way to the mean of its neighbours.
-fn blurred(places: &[Vec3], neighbours: &[Vec<u32>], rounds: usize) -> Vec<Vec3> {
-    let mut now = places.to_vec();
-    let mut next = now.clone();
-    for _ in 0..rounds {
-        for (to, (from, near)) in next.iter_mut().zip(now.iter().zip(neighbours)) {
-            let sum: Vec3 = near.iter().map(|&k| now[k as usize]).sum();
-            *to = from.midpoint(sum / near.len().max(1) as f32);
-        }
-        std::mem::swap(&mut now, &mut next);
-    }
-    now
 }
 
 /// Returns the shares of a material after mixing them between neighbours.
@@ -285,18 +242,6 @@ fn mingled(own: &[f32], neighbours: &[Vec<u32>]) -> Vec<f32> {
     shares
 }
 
-/// Returns the maximum offset of a point [voxels].
-fn farthest(grid: &VoxelGrid<Dim3>, at: Point) -> f32 {
-    let low = at.map(|k| k - AROUND);
-    let high = at.map(|k| k + AROUND - 1);
-    let solid = points_in(low, high)
-        .filter(|&voxel| grid.is_solid(voxel))
-        .count();
-    let share = solid as f32 / (8 * AROUND * AROUND * AROUND) as f32;
-    let thick = ((share - SOLID[0]) / (SOLID[1] - SOLID[0])).clamp(0.0, 1.0);
-    FARTHEST[0] + (FARTHEST[1] - FARTHEST[0]) * thick
-}
-
 /// Returns a constant pseudo-random value of a lattice point for an axis, 0 to 1.
 fn grain(at: Point, axis: u32) -> f32 {
     let [x, y, z] = at.map(|k| k as u32);
@@ -312,29 +257,18 @@ fn grain(at: Point, axis: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fuwafuwa::Material;
 
-    #[test]
-    fn offsets_make_a_ball_round() {
-        for n in [12, 32] {
-            let grid = VoxelGrid::<Dim3>::ball(n, 1.0).unwrap();
-            let rest = Rest::new(&grid, &grid);
-            let half = 0.5 * n as f32;
-            let round = (grid.solid_count() as f32 * 0.75 / std::f32::consts::PI).cbrt();
-            for point in &rest.points {
-                let at = place(point.at) + point.offset;
-                let radius = at.distance(Vec3::splat(half));
-                assert!(
-                    (radius - round).abs() < 0.35,
-                    "n = {n}: {radius}, not {round}"
-                );
-            }
-        }
+    fn rest_of(grid: &VoxelGrid<Dim3>) -> Rest {
+        let materials = [Material::default(); 2];
+        let body = SoftBody::new(grid.clone(), &materials).unwrap();
+        Rest::new(&body, grid)
     }
 
     /// Returns all surface points with their position across the border of two materials: 0 = first, 1 =
     /// second.
     fn sides(grid: &VoxelGrid<Dim3>) -> Vec<(Point, f32)> {
-        let rest = Rest::new(grid, grid);
+        let rest = rest_of(grid);
         let side = |point: &RestPoint| match point.tint.materials {
             [1, 1] => 0.0,
             [2, 2] => 1.0,
@@ -383,7 +317,7 @@ mod tests {
                 .map(|found| found.1)
         };
         assert!(side([5, 5, 10]) > Some(0.5) && side([3, 5, 10]) < Some(0.5));
-        let rest = Rest::new(&grid, &grid);
+        let rest = rest_of(&grid);
         assert_eq!(rest.tint([5, 5, 5], 0).materials, [1, 1]);
         assert_eq!(
             rest.tint([5, 5, 9], 0).materials,
@@ -396,7 +330,7 @@ mod tests {
     fn points_separate_voxels_that_touch_along_an_edge() {
         let grid =
             VoxelGrid::<Dim3>::from_fn([2, 2, 1], 1.0, |[x, y, _]| u8::from(x == y)).unwrap();
-        let rest = Rest::new(&grid, &grid);
+        let rest = rest_of(&grid);
         assert_eq!(rest.points.len(), 16);
         assert_ne!(rest.find([1, 1, 1], 0), rest.find([1, 1, 1], 3));
         assert_eq!(rest.find([1, 1, 1], 1), None);

@@ -68,7 +68,7 @@ impl Skin {
     ) -> bool {
         if !self.rest.fits(body.grid(), numbers) {
             *self = Self {
-                rest: Rest::new(body.grid(), numbers),
+                rest: Rest::new(body, numbers),
                 ..Self::default()
             };
         }

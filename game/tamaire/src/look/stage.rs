@@ -8,7 +8,7 @@ use app_shell::{SpaceStage, Theme};
 use eframe::egui_wgpu::{Callback, RenderState};
 use egui::{Color32, Painter, Shape, Stroke, Ui};
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Vec3};
-use fuwafuwa_render::{Ages, Cost, Frame, Outlines, Particle, Renderer, Rest, Sticker, space};
+use fuwafuwa_render::{Ages, Cost, Frame, Outlines, Particle, Renderer, Sticker, space};
 use std::sync::{Arc, Mutex};
 use tamaire_play::{AnyRound, Level, Round};
 
@@ -31,7 +31,7 @@ pub struct Stage {
     followed: Option<(Arc<Level>, u64)>,
     maps: Maps,
     /// Outlines of a ghost in 2D, and the smoothing offsets of its bodies.
-    ghost: (Outlines, Vec<Rest>),
+    ghost: Outlines,
     time: f64,
 }
 
@@ -151,13 +151,9 @@ impl Stage {
     /// Draws an earlier round: the outlines of its bodies, as smooth as their skin, and its hands.
     fn draw_ghost(&mut self, painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
         let (view, stroke) = (&look.view, Stroke::new(GHOST_LINE, GHOST));
-        let (rings, rests) = &mut self.ghost;
-        rests.resize_with(round.world().soft_bodies().count(), Rest::default);
-        for ((_, body), rest) in round.world().soft_bodies().zip(rests) {
-            if !rest.matches_grid(body.grid()) {
-                *rest = Rest::new(body.grid());
-            }
-            rings.trace(body, rest);
+        let rings = &mut self.ghost;
+        for (_, body) in round.world().soft_bodies() {
+            rings.trace(body);
             for span in &rings.spans {
                 let points = rings.points[span.start..span.end].iter();
                 let points = points.map(|point| view.to_screen(point.at.extend(0.0)));
