@@ -14,6 +14,7 @@ mod bench;
 mod check;
 mod count;
 mod figure;
+mod plot;
 mod replay;
 mod report;
 mod run;

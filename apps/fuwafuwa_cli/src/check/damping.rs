@@ -100,7 +100,7 @@ const fn stiffness(stiffness: f32) -> Damping {
 
 /// Lowest vibration mode of its kind.
 #[derive(Copy, Clone, Debug)]
-enum Mode {
+pub enum Mode {
     /// Free bar that is stretched and compressed. With a Poisson's ratio of 0, u = sin(πx / L) is exact at
     /// every shape.
     Longitudinal,
@@ -117,7 +117,7 @@ enum Mode {
 impl Mode {
     /// Returns the displacement along the bar at `x` from the middle of a bar of length 1, and `y` from its
     /// axis.
-    fn shape(self, x: f64, y: f64) -> (f64, f64) {
+    pub fn shape(self, x: f64, y: f64) -> (f64, f64) {
         // Roots k of cos k cosh k = 1 and of cos k cosh k = −1, with the factor of the sines (cosh k ∓ cos k)
         // / (sinh k ∓ sin k).
         let along = x + 0.5;
@@ -159,11 +159,11 @@ impl Mode {
 
 /// Measured vibration.
 #[derive(Copy, Clone, Debug)]
-struct Vibration {
+pub struct Vibration {
     /// Angular frequency without damping [rad/s].
-    frequency: f64,
+    pub frequency: f64,
     /// Damping ratio.
-    ratio: f64,
+    pub ratio: f64,
 }
 
 /// Compares measured damping ratios with the law.
@@ -345,7 +345,7 @@ fn vibration<D: Dim>(
 /// Returns the damped vibration that fits samples at equal intervals [s] best, by least squares. Other modes
 /// of the body hardly affect it, because their frequencies differ. `expected` is the expected vibration; the
 /// frequency may differ from it by up to 30 %.
-fn vibration_in(samples: &[f64], interval: f64, expected: Vibration) -> Vibration {
+pub fn vibration_in(samples: &[f64], interval: f64, expected: Vibration) -> Vibration {
     let error = |decay: f64, damped: f64| fit_error(samples, interval, decay, damped);
     let guess = expected.ratio * expected.frequency;
     let scan = (0..=120).map(|k| expected.frequency * (0.7 + 0.005 * f64::from(k)));

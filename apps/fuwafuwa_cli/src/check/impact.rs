@@ -27,8 +27,10 @@ const SPEEDS: [f32; 4] = [10.0, 30.0, 60.0, 300.0];
 const PLATE: f32 = 0.02;
 /// Maximum distance by which a node enters the plate [m]. The plate pushes nodes out to the nearer side.
 const ENTERED: f64 = 0.4 * PLATE as f64;
-/// Distance from which the bodies start [m].
+/// Maximum distance from which the bodies start [m].
 const DISTANCE: f32 = 2.0;
+/// Maximum distance from which the bodies start [voxels]. From 8192 voxels on, bodies are out of range.
+const VOXELS: f32 = 4000.0;
 /// Maximum change of the momentum of two bodies that hit each other, relative to the momentum of one body.
 /// Bodies of 2 mm that meet 1 m from the origin lose a percent by rounding.
 const MOMENTUM: f64 = 0.02;
@@ -119,6 +121,11 @@ fn both_impacts<D: Dim>(
     ])
 }
 
+/// Returns the distance [m] from which bodies with `n` voxels across start.
+fn distance(n: usize, width: f32) -> f32 {
+    DISTANCE.min(VOXELS * width / n as f32)
+}
+
 fn vector<D: Dim>(x: f32, y: f32, z: f32) -> D::Vector {
     D::Vector::from_vec3(Vec3::new(x, y, if D::N == 3 { z } else { 0.0 }))
 }
@@ -147,14 +154,15 @@ fn add_ball<D: Dim>(
     Ok(body)
 }
 
-/// Steps for as long as a body at `speed` needs for twice the distance, and half a second. `look` is called after
+/// Steps for as long as a body at `speed` needs for twice a distance [m], and half a second. `look` is called after
 /// each tick. Returns the number of events of slowed impacts, and the distance of a substep [m].
 fn run<D: Dim>(
     world: &mut World<D>,
+    distance: f32,
     speed: f32,
     mut look: impl FnMut(&mut World<D>),
 ) -> Result<(f64, f32)> {
-    let ticks = (120.0 * DISTANCE / speed) as usize + 30;
+    let ticks = (120.0 * distance / speed) as usize + 30;
     let (mut slowed, mut moved) = (0, 0.0);
     for _ in 0..ticks {
         let report = world.step();
@@ -176,10 +184,11 @@ fn on_plate<D: Dim>(n: usize, width: f32, speed: f32, treatment: StiffBodies) ->
         half: vector::<D>(3.0, 0.5 * PLATE, 3.0),
     };
     world.add_rigid_body(RigidBody::fixed(plate))?;
-    let at = [0.013 * width, DISTANCE + 0.5 * width];
+    let distance = distance(n, width);
+    let at = [0.013 * width, distance + 0.5 * width];
     let body = add_ball(&mut world, n, width, at, -speed)?;
     let mut entered = 0.0f64;
-    let (slowed, moved) = run(&mut world, speed, |world| {
+    let (slowed, moved) = run(&mut world, distance, speed, |world| {
         let nodes = world[body].mesh().nodes();
         let heights = nodes.map(|(id, _)| world[body].node_state(id).0.to_vec3().y);
         let lowest = heights.fold(f32::INFINITY, f32::min);
@@ -201,7 +210,8 @@ fn on_each_other<D: Dim>(
     treatment: StiffBodies,
 ) -> Result<Impact> {
     let mut world = world::<D>(treatment)?;
-    let apart = 0.5 * (DISTANCE + width);
+    let distance = distance(n, width);
+    let apart = 0.5 * (distance + width);
     let balls = [
         add_ball(&mut world, n, width, [0.0, apart], -0.5 * speed)?,
         add_ball(&mut world, n, width, [0.03 * width, -apart], 0.5 * speed)?,
@@ -215,7 +225,7 @@ fn on_each_other<D: Dim>(
     };
     let before = total(&world);
     let (mut entered, mut momentum) = (0.0f64, 0.0f64);
-    let (slowed, moved) = run(&mut world, speed, |world| {
+    let (slowed, moved) = run(&mut world, distance, speed, |world| {
         let apart = centre(&world[balls[0]]).y - centre(&world[balls[1]]).y;
         entered = entered.max(1.0 - apart / f64::from(width));
         momentum = momentum.max((total(world) - before).length() / one);
