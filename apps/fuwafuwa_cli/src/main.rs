@@ -19,6 +19,7 @@ mod replay;
 mod report;
 mod run;
 mod scan;
+mod validation;
 
 use anyhow::Result;
 use clap::{CommandFactory, Parser, Subcommand};

@@ -138,6 +138,24 @@ impl Outcome {
         }
     }
 
+    /// Returns the deviation from the reference, or from the middle of the allowed range, in units of the bound:
+    /// from −1 to 1 if the value meets its requirement. With a limit on one side only, a passing value has a
+    /// deviation from 0 to 1. `None` if there is no bound.
+    pub fn deviation(&self) -> Option<f64> {
+        let deviation = match (self.low, self.high) {
+            (Some(low), Some(high)) => 2.0 * (self.value - 0.5 * (low + high)) / (high - low),
+            (None, Some(high)) => self.value / high,
+            (Some(low), None) => low / self.value,
+            (None, None) => return None,
+        };
+        // A bound of 0 allows one value only.
+        Some(match deviation.is_nan() {
+            true if self.pass == Some(true) => 0.0,
+            true => f64::INFINITY,
+            false => deviation,
+        })
+    }
+
     fn wanting(self, wanted: String) -> Self {
         Self { wanted, ..self }
     }
@@ -191,6 +209,11 @@ impl Progress {
     pub fn step(&self) {
         self.bar.inc(1);
         self.show_if_slow();
+    }
+
+    /// Hides the progress bar while `print` prints.
+    pub fn suspend<Printed>(&self, print: impl FnOnce() -> Printed) -> Printed {
+        self.bar.suspend(print)
     }
 
     /// Shows the progress bar if the command has run longer than [`PATIENCE`]. Cheap enough for inner loops.

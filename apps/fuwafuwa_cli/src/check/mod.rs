@@ -32,10 +32,15 @@ mod statics;
 mod tear;
 mod turek_hron;
 
-use crate::report::{self, Findings, Progress};
-use anyhow::Result;
+use crate::report::{self, Findings, Outcome, Progress};
+use crate::validation::{self, Section};
+use anyhow::{Context, Result};
 use clap::ValueEnum;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
 
 /// Check the mechanics against references. The exit code is 1 if a check fails.
 #[derive(Debug, clap::Args)]
@@ -46,6 +51,13 @@ pub struct Arguments {
     /// Print JSON instead of a table.
     #[arg(long)]
     json: bool,
+    /// Write a report in Markdown, with a picture of each check in a folder beside it. Files that would not change
+    /// are left alone.
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+    /// Compare the report with its files instead of writing it. The exit code is 1 if they differ.
+    #[arg(long, requires = "report")]
+    compare: bool,
 }
 
 #[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
@@ -107,67 +119,155 @@ enum Which {
 
 type Check = fn(&Progress) -> Result<Findings>;
 
+/// All checks, in the order of their output.
+const CHECKS: [(Which, Check); 25] = [
+    (Which::Patch, |progress| Ok(patch::check(progress)?.into())),
+    (Which::Beam, |progress| Ok(beam::check(progress)?.into())),
+    (Which::Sag, |progress| Ok(sag::check(progress)?.into())),
+    (
+        Which::Period,
+        |progress| Ok(period::check(progress)?.into()),
+    ),
+    (Which::Damping, |progress| {
+        Ok(damping::check(progress)?.into())
+    }),
+    (Which::Spin, |progress| Ok(spin::check(progress)?.into())),
+    (Which::Momentum, |progress| {
+        Ok(momentum::check(progress)?.into())
+    }),
+    (Which::Tear, |progress| Ok(tear::check(progress)?.into())),
+    (Which::Pile, |progress| Ok(pile::check(progress)?.into())),
+    (Which::Stack, |progress| Ok(stack::check(progress)?.into())),
+    (Which::Heap, |progress| Ok(heap::check(progress)?.into())),
+    (Which::Slow, |progress| Ok(slow::check(progress)?.into())),
+    (Which::Slope, |progress| Ok(slope::check(progress)?.into())),
+    (Which::Doughnut, |progress| {
+        Ok(doughnut::check(progress)?.into())
+    }),
+    (Which::FreeFall, |progress| {
+        Ok(free_fall::check(progress)?.into())
+    }),
+    (
+        Which::Impact,
+        |progress| Ok(impact::check(progress)?.into()),
+    ),
+    (Which::Far, |progress| Ok(far::check(progress)?.into())),
+    (Which::Reaction, |progress| {
+        Ok(reaction::check(progress)?.into())
+    }),
+    (Which::Overlap, |progress| {
+        Ok(overlap::check(progress)?.into())
+    }),
+    (Which::Scale, |progress| Ok(scale::check(progress)?.into())),
+    (
+        Which::Bounce,
+        |progress| Ok(bounce::check(progress)?.into()),
+    ),
+    (Which::Elastica, elastica::check),
+    (Which::Greenhill, greenhill::check),
+    (Which::Ring, ring::check),
+    (Which::TurekHron, turek_hron::check),
+];
+
 /// Runs the checks and prints their outcomes.
 pub fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let checks: [(Which, Check); 25] = [
-        (Which::Patch, |progress| Ok(patch::check(progress)?.into())),
-        (Which::Beam, |progress| Ok(beam::check(progress)?.into())),
-        (Which::Sag, |progress| Ok(sag::check(progress)?.into())),
-        (
-            Which::Period,
-            |progress| Ok(period::check(progress)?.into()),
-        ),
-        (Which::Damping, |progress| {
-            Ok(damping::check(progress)?.into())
-        }),
-        (Which::Spin, |progress| Ok(spin::check(progress)?.into())),
-        (Which::Momentum, |progress| {
-            Ok(momentum::check(progress)?.into())
-        }),
-        (Which::Tear, |progress| Ok(tear::check(progress)?.into())),
-        (Which::Pile, |progress| Ok(pile::check(progress)?.into())),
-        (Which::Stack, |progress| Ok(stack::check(progress)?.into())),
-        (Which::Heap, |progress| Ok(heap::check(progress)?.into())),
-        (Which::Slow, |progress| Ok(slow::check(progress)?.into())),
-        (Which::Slope, |progress| Ok(slope::check(progress)?.into())),
-        (Which::Doughnut, |progress| {
-            Ok(doughnut::check(progress)?.into())
-        }),
-        (Which::FreeFall, |progress| {
-            Ok(free_fall::check(progress)?.into())
-        }),
-        (
-            Which::Impact,
-            |progress| Ok(impact::check(progress)?.into()),
-        ),
-        (Which::Far, |progress| Ok(far::check(progress)?.into())),
-        (Which::Reaction, |progress| {
-            Ok(reaction::check(progress)?.into())
-        }),
-        (Which::Overlap, |progress| {
-            Ok(overlap::check(progress)?.into())
-        }),
-        (Which::Scale, |progress| Ok(scale::check(progress)?.into())),
-        (
-            Which::Bounce,
-            |progress| Ok(bounce::check(progress)?.into()),
-        ),
-        (Which::Elastica, elastica::check),
-        (Which::Greenhill, greenhill::check),
-        (Which::Ring, ring::check),
-        (Which::TurekHron, turek_hron::check),
-    ];
-    let mut outcomes = Vec::new();
-    for (name, check) in checks {
-        if arguments.which == name || arguments.which == Which::All {
-            outcomes.extend(check(&Progress::new())?.outcomes);
+    let is_chosen = |which| arguments.which == which || arguments.which == Which::All;
+    let checks: Vec<_> = CHECKS
+        .into_iter()
+        .filter(|(which, _)| is_chosen(*which))
+        .collect();
+    if let Some(path) = &arguments.report {
+        output::check_folder(path).with_context(|| path.display().to_string())?;
+    }
+    let progress = Progress::new();
+    let mut sections = Vec::new();
+    run_all(&checks, &progress, |which, findings| {
+        if !arguments.json {
+            let table = report::outcome_table(&findings.outcomes);
+            let gap = if sections.is_empty() { "" } else { "\n" };
+            progress.suspend(|| output::print(&format!("{gap}{table}")))?;
+        }
+        sections.push(which.section(findings));
+        Ok(())
+    })?;
+    drop(progress);
+    let outcomes = || {
+        sections
+            .iter()
+            .flat_map(|section| &section.findings.outcomes)
+    };
+    if arguments.json {
+        report::print_json(&outcomes().collect::<Vec<&Outcome>>())?;
+    }
+    let mut failed = outcomes().any(|outcome| outcome.pass == Some(false));
+    if let Some(path) = &arguments.report {
+        let files = validation::files(path, &sections);
+        if arguments.compare {
+            let differences = validation::differences(&files);
+            differences.iter().for_each(output::warn);
+            failed |= !differences.is_empty();
+        } else {
+            validation::write(&files)?;
         }
     }
-    if arguments.json {
-        report::print_json(&outcomes)?;
-    } else {
-        output::print(&report::outcome_table(&outcomes))?;
-    }
-    let failed = outcomes.iter().any(|outcome| outcome.pass == Some(false));
     Ok(ExitCode::from(u8::from(failed)))
+}
+
+impl Which {
+    /// Returns the section of the report for this check.
+    fn section(self, findings: Findings) -> Section {
+        let value = self.to_possible_value();
+        let about = value.as_ref().and_then(|value| value.get_help());
+        Section {
+            name: value
+                .as_ref()
+                .map_or(String::new(), |value| value.get_name().to_owned()),
+            about: about.map_or(String::new(), ToString::to_string),
+            findings,
+        }
+    }
+}
+
+/// Runs checks on all threads. `done` receives the findings of each check in the order of the checks, as soon as all
+/// checks before it are done. After an error, no further check begins.
+fn run_all(
+    checks: &[(Which, Check)],
+    progress: &Progress,
+    mut done: impl FnMut(Which, Findings) -> Result<()>,
+) -> Result<()> {
+    progress.expect(checks.len() as u64);
+    let next = AtomicUsize::new(0);
+    let (sender, receiver) = mpsc::channel();
+    std::thread::scope(|scope| {
+        for _ in 0..parallel::threads().min(checks.len()) {
+            let sender = sender.clone();
+            let next = &next;
+            scope.spawn(move || {
+                loop {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let Some((_, check)) = checks.get(index) else {
+                        break;
+                    };
+                    let found = check(progress);
+                    progress.step();
+                    if found.is_err() {
+                        next.store(checks.len(), Ordering::Relaxed);
+                    }
+                    if sender.send((index, found)).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        let (mut waiting, mut count, mut result) = (BTreeMap::new(), 0, Ok(()));
+        for (index, found) in receiver {
+            waiting.insert(index, found);
+            while let Some(found) = waiting.remove(&count) {
+                result = result.and_then(|()| done(checks[count].0, found?));
+                count += 1;
+            }
+        }
+        result
+    })
 }
