@@ -85,22 +85,26 @@ impl Points {
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), Box<dyn Error>>;
 
-/// Width of a picture [px].
-const WIDTH: i32 = 900;
-/// Height of a plot with axes [px].
-const HEIGHT: i32 = 400;
-/// Pixels of a plot with axes: left and right edge, and margins above and below.
-const FRAME: [i32; 4] = [84, 640, 16, 56];
-/// Pixels of the left and the right edge of a plot of deviations.
-const DEVIATIONS: [i32; 2] = [44, 324];
+/// Units of coordinates in the file per pixel, so that rounding to whole units leaves curves smooth.
+const UNITS: i32 = 4;
+/// Width of a picture.
+const WIDTH: i32 = px(900);
+/// Height of a plot with axes.
+const HEIGHT: i32 = px(340);
+/// Left and right edge of a plot with axes, and margins above and below.
+const FRAME: [i32; 4] = [px(84), px(640), px(16), px(56)];
+/// Left and right edge of a plot of deviations.
+const DEVIATIONS: [i32; 2] = [px(44), px(324)];
+/// Upper edge of a plot of deviations.
+const TOP: i32 = px(10);
 /// Deviation at the edges of a plot of deviations. Larger ones are drawn there.
 const EDGE: f64 = 1.5;
 /// Number of rows up to which a plot of deviations names its rows.
 const NAMED_ROWS: usize = 70;
-/// Height of a row [px], with and without its name.
-const ROW: [i32; 2] = [16, 4];
-/// Font sizes [px], in the unit of the crate plotters.
-const LETTERS: [f64; 2] = [13.0 * 1.24, 11.0 * 1.24];
+/// Height of a row, with and without its name.
+const ROW: [i32; 2] = [px(16), px(4)];
+/// Font sizes: 13 and 11 px, in the unit of the crate plotters.
+const LETTERS: [f64; 2] = [13.0 * 1.24 * UNITS as f64, 11.0 * 1.24 * UNITS as f64];
 /// Approximate number of intervals between the marks of an axis.
 const INTERVALS: f64 = 6.0;
 
@@ -136,42 +140,60 @@ pub fn svg_of_deviations(outcomes: &[Outcome]) -> String {
         .collect();
     let is_named = rows.len() <= NAMED_ROWS;
     let pitch = if is_named { ROW[0] } else { ROW[1] };
-    let bottom = 10 + pitch * rows.len() as i32;
-    svg(bottom + 48, |area| {
+    let bottom = TOP + pitch * rows.len() as i32;
+    svg(bottom + px(48), |area| {
         let [left, right] = DEVIATIONS;
         let x = |deviation: f64| {
             let share = (deviation.clamp(-EDGE, EDGE) + EDGE) / (2.0 * EDGE);
             left + (share * f64::from(right - left)).round() as i32
         };
-        let band = [(x(-1.0), 10), (x(1.0), bottom)];
+        let band = [(x(-1.0), TOP), (x(1.0), bottom)];
         area.draw(&Rectangle::new(band, BAND.filled()))?;
         for at in [-1.0, 0.0, 1.0] {
-            line(area, [(x(at), 10), (x(at), bottom)], &GRID, 1)?;
-            write(area, &at.to_string(), (x(at), bottom + 5), HPos::Center, 0)?;
+            line(area, [(x(at), TOP), (x(at), bottom)], &GRID, 1)?;
+            write(
+                area,
+                &at.to_string(),
+                (x(at), bottom + px(5)),
+                HPos::Center,
+                0,
+            )?;
         }
         line(area, [(left, bottom), (right, bottom)], &INK, 1)?;
         let title = "deviation / bound";
         write(
             area,
             title,
-            ((left + right) / 2, bottom + 24),
+            ((left + right) / 2, bottom + px(24)),
             HPos::Center,
             0,
         )?;
         for (row, &(number, outcome, deviation)) in rows.iter().enumerate() {
-            let y = 10 + pitch * row as i32 + pitch / 2;
+            let y = TOP + pitch * row as i32 + pitch / 2;
             let colour = if outcome.pass == Some(false) {
                 RED
             } else {
                 COLOURS[0]
             };
-            let radius = if is_named { 4 } else { 2 };
+            let radius = px(if is_named { 4 } else { 2 });
             area.draw(&Circle::new((x(deviation), y), radius, colour.filled()))?;
             if is_named || number == 1 || number % 20 == 0 {
-                write(area, &number.to_string(), (left - 8, y - 7), HPos::Right, 1)?;
+                write(
+                    area,
+                    &number.to_string(),
+                    (left - px(8), y - px(7)),
+                    HPos::Right,
+                    1,
+                )?;
             }
             if is_named {
-                write(area, &outcome.case, (right + 12, y - 7), HPos::Left, 1)?;
+                write(
+                    area,
+                    &outcome.case,
+                    (right + px(12), y - px(7)),
+                    HPos::Left,
+                    1,
+                )?;
             }
         }
         Ok(())
@@ -179,7 +201,7 @@ pub fn svg_of_deviations(outcomes: &[Outcome]) -> String {
 }
 
 impl Plot {
-    /// Draws the plot with its upper edge at `top` [px].
+    /// Draws the plot with its upper edge at `top`.
     fn draw(&self, area: &Area, top: i32) -> Drawn {
         let [left, right, above, below] = FRAME;
         let (high, low) = (top + above, top + HEIGHT - below);
@@ -203,24 +225,41 @@ impl Plot {
         }
         for mark in x_axis.marks() {
             line(area, [(x(mark), high), (x(mark), low)], &GRID, 1)?;
-            write(area, &digits(mark), (x(mark), low + 5), HPos::Center, 0)?;
+            write(area, &digits(mark), (x(mark), low + px(5)), HPos::Center, 0)?;
         }
         for mark in y_axis.marks() {
             line(area, [(left, y(mark)), (right, y(mark))], &GRID, 1)?;
-            write(area, &digits(mark), (left - 8, y(mark) - 8), HPos::Right, 0)?;
+            write(
+                area,
+                &digits(mark),
+                (left - px(8), y(mark) - px(8)),
+                HPos::Right,
+                0,
+            )?;
         }
-        area.draw(&Rectangle::new([(left, high), (right, low)], INK))?;
+        let frame = [
+            (left, high),
+            (right, high),
+            (right, low),
+            (left, low),
+            (left, high),
+        ];
+        area.draw(&PathElement::new(frame, INK.stroke_width(UNITS as u32)))?;
         write(
             area,
             &self.x,
-            ((left + right) / 2, low + 26),
+            ((left + right) / 2, low + px(26)),
             HPos::Center,
             0,
         )?;
         let upwards = letters(0)
             .transform(FontTransform::Rotate270)
             .pos(Pos::new(HPos::Center, VPos::Top));
-        area.draw(&Text::new(self.y.clone(), (8, (high + low) / 2), upwards))?;
+        area.draw(&Text::new(
+            self.y.clone(),
+            (px(8), (high + low) / 2),
+            upwards,
+        ))?;
         // Curves and points of the same name share a colour and a row of the legend.
         let names = self.curves.iter().map(|curve| &curve.name);
         let mut legend: Vec<&str> = Vec::new();
@@ -234,10 +273,13 @@ impl Plot {
             let row = row_of(&curve.name);
             let path: Vec<_> = curve.points.iter().map(|&(a, b)| (x(a), y(b))).collect();
             let colour = COLOURS[row % COLOURS.len()];
-            area.draw(&PathElement::new(path, colour.stroke_width(2)))?;
+            area.draw(&PathElement::new(
+                path,
+                colour.stroke_width(2 * UNITS as u32),
+            ))?;
             if !curve.name.is_empty() {
-                let y = high + 8 + 20 * row as i32;
-                line(area, [(right + 14, y), (right + 42, y)], &colour, 2)?;
+                let y = high + px(8 + 20 * row as i32);
+                line(area, [(right + px(14), y), (right + px(42), y)], &colour, 2)?;
             }
         }
         for points in &self.points {
@@ -245,13 +287,13 @@ impl Plot {
             for &(a, b) in &points.points {
                 mark(area, (x(a), y(b)), row)?;
             }
-            mark(area, (right + 28, high + 8 + 20 * row as i32), row)?;
+            mark(area, (right + px(28), high + px(8 + 20 * row as i32)), row)?;
         }
         for (row, name) in legend.iter().enumerate() {
             write(
                 area,
                 name,
-                (right + 50, high + 20 * row as i32),
+                (right + px(50), high + px(20 * row as i32)),
                 HPos::Left,
                 0,
             )?;
@@ -326,10 +368,11 @@ impl Axis {
 fn mark(area: &Area, at: (i32, i32), row: usize) -> Drawn {
     let style = COLOURS[row % COLOURS.len()];
     match row % 3 {
-        0 => area.draw(&Circle::new(at, 4, style.filled()))?,
-        1 => area.draw(&TriangleMarker::new(at, 6, style.filled()))?,
+        0 => area.draw(&Circle::new(at, px(4), style.filled()))?,
+        1 => area.draw(&TriangleMarker::new(at, px(6), style.filled()))?,
         _ => {
-            let corners = [(at.0 - 4, at.1 - 4), (at.0 + 4, at.1 + 4)];
+            let half = px(4);
+            let corners = [(at.0 - half, at.1 - half), (at.0 + half, at.1 + half)];
             area.draw(&Rectangle::new(corners, style.filled()))?;
         }
     }
@@ -337,7 +380,10 @@ fn mark(area: &Area, at: (i32, i32), row: usize) -> Drawn {
 }
 
 fn line(area: &Area, ends: [(i32, i32); 2], colour: &RGBColor, width: u32) -> Drawn {
-    area.draw(&PathElement::new(ends, colour.stroke_width(width)))?;
+    area.draw(&PathElement::new(
+        ends,
+        colour.stroke_width(width * UNITS as u32),
+    ))?;
     Ok(())
 }
 
@@ -363,5 +409,13 @@ fn svg(height: i32, draw: impl FnOnce(&Area) -> Drawn) -> String {
         draw(&area).expect("drawing into a string cannot fail");
         area.present().expect("drawing into a string cannot fail");
     }
-    text
+    // The picture has its size in pixels, and coordinates in smaller units.
+    let fine = format!("width=\"{WIDTH}\" height=\"{height}\" ");
+    let [wide, high] = [WIDTH, height].map(|units| units / UNITS);
+    text.replacen(&fine, &format!("width=\"{wide}\" height=\"{high}\" "), 1) + "\n"
+}
+
+/// Converts pixels to units of coordinates.
+const fn px(pixels: i32) -> i32 {
+    pixels * UNITS
 }

@@ -8,7 +8,8 @@
 
 use super::motion::{arrange, material};
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::plot::{Curve, Plot, Points};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
@@ -167,11 +168,12 @@ pub struct Vibration {
 }
 
 /// Compares measured damping ratios with the law.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let bars = parallel::each(&BARS, progress, |&(n, across, mode, damping)| {
         bar(n, across, mode, damping)
     })?;
     let mut outcomes = Vec::new();
+    let plot = plot(&bars);
     for ((n, across, mode, damping), (found, law)) in BARS.iter().zip(bars) {
         let case = format!(
             "damping {}/s {:.2} ms, {}, {n} x {across} ({:.2} Hz, ratio {law:.4}), ratio / law",
@@ -198,7 +200,47 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let case = format!("damping of two materials, {n} x {across}, ratio {law:.4}, ratio / law");
         outcomes.push(Outcome::near(case, found.ratio / law, 1.0, TOLERANCE));
     }
-    Ok(outcomes)
+    Ok(Findings {
+        outcomes,
+        plots: vec![plot],
+    })
+}
+
+/// Plots the damping ratios of bars over their frequency, with a curve of the law for each damping. Leaves out
+/// [`TOO_STIFF`], which does not act in full.
+fn plot(found: &[(Vibration, f64)]) -> Plot {
+    let mut dampings: Vec<Damping> = Vec::new();
+    for &(.., damping) in BARS.iter().filter(|(.., damping)| *damping != TOO_STIFF) {
+        if !dampings.contains(&damping) {
+            dampings.push(damping);
+        }
+    }
+    let name = |damping: Damping| match damping.mass > 0.0 {
+        true => format!("α = {} 1/s", damping.mass),
+        false => format!("β = {} ms", 1e3 * f64::from(damping.stiffness)),
+    };
+    let mut plot = Plot {
+        x: "frequency [Hz]".into(),
+        y: "damping ratio".into(),
+        is_log: [true, true],
+        ..Plot::default()
+    };
+    for damping in dampings {
+        let of = { BARS.iter().zip(found) }.filter(|((.., own), _)| *own == damping);
+        let points: Vec<(f64, f64)> = of
+            .map(|(_, (vibration, _))| (vibration.frequency / TAU, vibration.ratio))
+            .collect();
+        let low = points
+            .iter()
+            .fold(f64::INFINITY, |low, point| low.min(point.0));
+        let high = points.iter().fold(0.0f64, |high, point| high.max(point.0));
+        // The law is a straight line on logarithmic axes.
+        let law = |frequency: f64| (frequency, f64::from(damping.ratio(frequency as f32)));
+        plot.curves
+            .push(Curve::new([law(0.8 * low), law(1.25 * high)]).named(name(damping)));
+        plot.points.push(Points::new(name(damping), points));
+    }
+    plot
 }
 
 /// Returns the vibration of a 2D bar, and the ratio of the law.

@@ -4,7 +4,7 @@
 use super::motion::{centre, material, throw};
 use super::parallel;
 use super::scale::{TREATMENTS, name};
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Context, Result, ensure};
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::{
@@ -45,7 +45,7 @@ const CARRIERS: [(usize, f32); 2] = [(2, 20.0), (3, 50.0)];
 const PINNED: f64 = 1.0;
 
 /// Throws bodies at a plate and at each other, and pulls them by a pin.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let cases: Vec<_> = { BODIES.iter() }
         .flat_map(|&body| SPEEDS.map(|speed| (body, speed)))
         .flat_map(|(body, speed)| TREATMENTS.map(|treatment| (body, speed, treatment)))
@@ -90,7 +90,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let case = format!("pin on a carrier {dim}D, {speed} m/s, gap [voxels]");
         outcomes.push(Outcome::at_most(case, gap, PINNED));
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 /// Result of an impact.

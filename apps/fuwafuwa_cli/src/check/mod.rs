@@ -62,56 +62,75 @@ pub struct Arguments {
 
 #[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
 enum Which {
-    /// Under uniform strain, no force must act on inner nodes of randomly shaped and cut bodies.
+    /// Under uniform strain, no force must act on inner nodes of randomly shaped and cut bodies. Reference: 0, by the
+    /// patch test of Irons. The paper's law is shown for comparison.
     Patch,
-    /// Graded cantilevers must bend according to Timoshenko's theory.
+    /// Graded cantilevers must bend like beams. Reference: Timoshenko's theory in closed form, w = P L³ / 3 E'I + P L
+    /// / κGA with κ = 5/6.
     Beam,
-    /// Graded bodies must sag under their weight like uniform ones; graded boxes, like one very fine uniform
-    /// box.
+    /// Graded bodies must sag under their weight like uniform ones. Reference: a uniform mesh of the same voxels,
+    /// solved exactly; for boxes, one very fine uniform box.
     Sag,
-    /// Graded bodies must oscillate like uniform ones and keep their energy.
+    /// Graded bodies must oscillate like uniform ones and keep their energy. Reference: the period of a uniform mesh
+    /// of the same voxels, and the energy at the start.
     Period,
-    /// Bars and balls must have the damping ratio of Rayleigh's law, at every shape and resolution.
+    /// Bars and balls must have the damping ratio of Rayleigh's law, at every shape and resolution. Reference: α / 2ω +
+    /// β ω / 2 at the measured frequency.
     Damping,
-    /// A free body must keep its angular momentum, and so must the halves of a body that was cut.
+    /// A free body must keep its angular momentum, and so must the halves of a body that was cut. Reference: the
+    /// momentum at the start.
     Spin,
-    /// Splits of nodes must preserve mass and momentum.
+    /// Splits of nodes must preserve mass and momentum. Reference: the values before the splits.
     Momentum,
-    /// Bars must break at the load given by the strength of their material, at any resolution.
+    /// Bars must break at the load given by the strength of their material, at any resolution. Reference: strength ×
+    /// section for whole bars; the mean over all resolutions for notched ones.
     Tear,
-    /// A pile of crumbs (pieces of one voxel) must come to rest, and no crumb may be lost.
+    /// A pile of crumbs (pieces of one voxel) must come to rest, and no crumb may be lost. Reference: limits set here.
     Pile,
-    /// A stack of bodies must stand still.
+    /// A stack of ten bodies must stand still. Reference: its place after 5 s; Young's modulus is 1.6 times that at
+    /// which a column buckles by Greenhill's formula.
     Stack,
-    /// Heaps of balls and cubes must fall asleep and stay asleep.
+    /// Heaps of balls and cubes must fall asleep and stay asleep. Reference: limits set here.
     Heap,
-    /// Bodies that sag, float or slide slowly must not be stopped.
+    /// Bodies that sag, float or slide slowly must not be stopped. Reference: the static solution of the same mesh, the
+    /// speed at the start, and Coulomb's law without friction.
     Slow,
-    /// Blocks on inclined planes must slide as Coulomb's law says, or rest.
+    /// Blocks on inclined planes must slide as Coulomb's law says, or rest. Reference: v = g (tan φ − µ) cos φ · t in
+    /// closed form.
     Slope,
-    /// A ring squeezed shut must not pass through itself.
+    /// A ring squeezed shut must not pass through itself. Reference: limits set here.
     Doughnut,
-    /// Bodies in flight must move like a point mass, at every size and speed.
+    /// Bodies in flight must move like a point mass, at every size and speed. Reference: v t + g t² / 2 and v + g t.
     FreeFall,
     /// Fast bodies must not pass through a plate, must keep their momentum, and a pin on a fast carrier must hold.
+    /// Reference: the momentum at the start, and limits set here.
     Impact,
-    /// Far from the origin, bodies must keep their shape, up to the distance at which they are refused.
+    /// Far from the origin, bodies must keep their shape, up to the distance at which they are refused. Reference: the
+    /// same body at the origin.
     Far,
-    /// Supports must carry the weight of sleeping bodies, and stretched bars must pull as in theory.
+    /// Supports must carry the weight of sleeping bodies, and stretched bars must pull as in theory. Reference: m g, its
+    /// moment, and E A ε.
     Reaction,
-    /// Objects placed inside each other must come apart.
+    /// Objects placed inside each other must come apart. Reference: limits set here.
     Overlap,
-    /// Bodies of 1 m to 0.5 mm must rest, tear and oscillate alike, exact or with scaled mass.
+    /// Bodies of 1 m to 0.5 mm must rest, tear and oscillate alike, exact or with scaled mass. Reference: a similar body
+    /// 1 m wide, and its load, which is strength × section.
     Scale,
-    /// Bodies of 1 m to 2 mm with scaled mass must bounce like exact ones, up to a stated scale.
+    /// Bodies of 1 m to 2 mm with scaled mass must bounce like exact ones, up to a stated scale. Reference: the same
+    /// body without scaling.
     Bounce,
-    /// Clamped bars under a tip load or their own weight must bend like the elastica.
+    /// Clamped bars must bend under a tip load or their own weight like the elastica. Reference: the equation of the
+    /// elastica, solved here, as tabulated for tip loads by Bisshopp and Drucker (Quarterly of Applied Mathematics 3,
+    /// 1945).
     Elastica,
-    /// A clamped column must buckle under its own weight at Greenhill's load.
+    /// A clamped column must sway ever slower under its own weight and buckle at Greenhill's load. Reference: q L³ / E'I
+    /// = 7.8373 (Greenhill 1881) and the frequencies of linearised beam theory, solved here.
     Greenhill,
-    /// A ring pinched at two opposite points must resist and bulge like the elastica.
+    /// A ring pinched at two opposite points must resist and bulge like the elastica. Reference: the equation of the
+    /// elastica, solved here; for small forces Timoshenko's theory of thick rings in closed form.
     Ring,
-    /// The bar behind a cylinder of Turek and Hron's benchmark must bend and oscillate as published.
+    /// An elastic bar behind a cylinder must bend and oscillate as published. Reference: the cases CSM1 to CSM3 of Turek
+    /// and Hron (2006, doi 10.1007/3-540-34596-5_15), finite elements.
     TurekHron,
     /// All checks.
     All,
@@ -121,48 +140,27 @@ type Check = fn(&Progress) -> Result<Findings>;
 
 /// All checks, in the order of their output.
 const CHECKS: [(Which, Check); 25] = [
-    (Which::Patch, |progress| Ok(patch::check(progress)?.into())),
-    (Which::Beam, |progress| Ok(beam::check(progress)?.into())),
-    (Which::Sag, |progress| Ok(sag::check(progress)?.into())),
-    (
-        Which::Period,
-        |progress| Ok(period::check(progress)?.into()),
-    ),
-    (Which::Damping, |progress| {
-        Ok(damping::check(progress)?.into())
-    }),
-    (Which::Spin, |progress| Ok(spin::check(progress)?.into())),
-    (Which::Momentum, |progress| {
-        Ok(momentum::check(progress)?.into())
-    }),
-    (Which::Tear, |progress| Ok(tear::check(progress)?.into())),
-    (Which::Pile, |progress| Ok(pile::check(progress)?.into())),
-    (Which::Stack, |progress| Ok(stack::check(progress)?.into())),
-    (Which::Heap, |progress| Ok(heap::check(progress)?.into())),
-    (Which::Slow, |progress| Ok(slow::check(progress)?.into())),
-    (Which::Slope, |progress| Ok(slope::check(progress)?.into())),
-    (Which::Doughnut, |progress| {
-        Ok(doughnut::check(progress)?.into())
-    }),
-    (Which::FreeFall, |progress| {
-        Ok(free_fall::check(progress)?.into())
-    }),
-    (
-        Which::Impact,
-        |progress| Ok(impact::check(progress)?.into()),
-    ),
-    (Which::Far, |progress| Ok(far::check(progress)?.into())),
-    (Which::Reaction, |progress| {
-        Ok(reaction::check(progress)?.into())
-    }),
-    (Which::Overlap, |progress| {
-        Ok(overlap::check(progress)?.into())
-    }),
-    (Which::Scale, |progress| Ok(scale::check(progress)?.into())),
-    (
-        Which::Bounce,
-        |progress| Ok(bounce::check(progress)?.into()),
-    ),
+    (Which::Patch, patch::check),
+    (Which::Beam, beam::check),
+    (Which::Sag, sag::check),
+    (Which::Period, period::check),
+    (Which::Damping, damping::check),
+    (Which::Spin, spin::check),
+    (Which::Momentum, momentum::check),
+    (Which::Tear, tear::check),
+    (Which::Pile, pile::check),
+    (Which::Stack, stack::check),
+    (Which::Heap, heap::check),
+    (Which::Slow, slow::check),
+    (Which::Slope, slope::check),
+    (Which::Doughnut, doughnut::check),
+    (Which::FreeFall, free_fall::check),
+    (Which::Impact, impact::check),
+    (Which::Far, far::check),
+    (Which::Reaction, reaction::check),
+    (Which::Overlap, overlap::check),
+    (Which::Scale, scale::check),
+    (Which::Bounce, bounce::check),
     (Which::Elastica, elastica::check),
     (Which::Greenhill, greenhill::check),
     (Which::Ring, ring::check),
