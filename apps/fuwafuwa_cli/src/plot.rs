@@ -142,7 +142,10 @@ pub fn svg_of_deviations(outcomes: &[Outcome]) -> String {
     let pitch = if is_named { ROW[0] } else { ROW[1] };
     let bottom = TOP + pitch * rows.len() as i32;
     svg(bottom + px(48), |area| {
-        let [left, right] = DEVIATIONS;
+        let [left, right] = match is_named {
+            true => DEVIATIONS,
+            false => [DEVIATIONS[0], WIDTH - DEVIATIONS[0]],
+        };
         let x = |deviation: f64| {
             let share = (deviation.clamp(-EDGE, EDGE) + EDGE) / (2.0 * EDGE);
             left + (share * f64::from(right - left)).round() as i32
@@ -321,7 +324,7 @@ impl Axis {
             true => 0.05 * (high - low),
             false => 0.05 * high.abs().max(1e-3),
         };
-        let starts_at_zero = !is_log && low >= 0.0 && low < 0.3 * high;
+        let starts_at_zero = !is_log && low > -1e-6 * high && low < 0.3 * high;
         Self {
             low: if starts_at_zero { 0.0 } else { low - room },
             high: high + room,

@@ -144,7 +144,7 @@ impl Outcome {
     pub fn deviation(&self) -> Option<f64> {
         let deviation = match (self.low, self.high) {
             (Some(low), Some(high)) => 2.0 * (self.value - 0.5 * (low + high)) / (high - low),
-            (None, Some(high)) => self.value / high,
+            (None, Some(high)) => (self.value / high).max(0.0),
             (Some(low), None) => low / self.value,
             (None, None) => return None,
         };

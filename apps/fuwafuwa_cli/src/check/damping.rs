@@ -9,7 +9,7 @@
 use super::motion::{arrange, material};
 use super::parallel;
 use crate::plot::{Curve, Plot, Points};
-use crate::report::{Findings, Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress, digits};
 use anyhow::Result;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
@@ -217,7 +217,7 @@ fn plot(found: &[(Vibration, f64)]) -> Plot {
     }
     let name = |damping: Damping| match damping.mass > 0.0 {
         true => format!("α = {} 1/s", damping.mass),
-        false => format!("β = {} ms", 1e3 * f64::from(damping.stiffness)),
+        false => format!("β = {} ms", digits(1e3 * f64::from(damping.stiffness))),
     };
     let mut plot = Plot {
         x: "frequency [Hz]".into(),

@@ -102,9 +102,12 @@ pub fn check(progress: &Progress) -> Result<Findings> {
     Ok(findings)
 }
 
+/// Name of a part of a bent shape, and its value.
+type Part = (&'static str, fn(Bent) -> f64);
+
 /// Plots drop, shortening and tip angle over the load.
 fn plot(x: &str, loads: &[f64], found: &[Bent], exact: impl Fn(f64) -> Bent) -> Plot {
-    let values: [(&str, fn(Bent) -> f64); 3] = [
+    let values: [Part; 3] = [
         ("drop / length", |bent| bent.drop),
         ("shortening / length", |bent| bent.shortening),
         ("tip angle / 90°", |bent| bent.angle / FRAC_PI_2),

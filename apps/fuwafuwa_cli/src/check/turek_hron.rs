@@ -25,6 +25,7 @@ use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
     Damping, Dim2, Material, SoftBody, SoftBodyHandle, Vec2, VoxelGrid, World, WorldConfig,
 };
+use std::f64::consts::TAU;
 
 /// Voxels across the bar and along it. Twice as many change the displacements at rest by 0.1 %.
 const VOXELS: [usize; 2] = [8, 140];
@@ -50,6 +51,8 @@ const LOSS: f64 = 0.001;
 const REST: f64 = 1.5;
 /// Simulated time of CSM3 [s].
 const DURATION: f64 = 10.0;
+/// Time that the plot shows [s].
+const SHOWN: f64 = 2.5;
 /// Length of a tick [s]. Ticks of 1/60 s miss up to 0.2 % of an amplitude.
 const TICK: f32 = 1.0 / 240.0;
 
@@ -114,25 +117,24 @@ pub fn check(progress: &Progress) -> Result<Findings> {
     Ok(findings)
 }
 
-/// Plots the height of the point A over time, with the extremes of the benchmark.
+/// Plots the height of the point A over time, upon a cosine with the mean, amplitude and period of the benchmark.
 fn plot(heights: &[f64]) -> Plot {
-    let time = |tick: usize| tick as f64 * f64::from(TICK);
     let [mean, amplitude] = MOVING[1];
-    let end = time(heights.len());
-    let level = |height: f64| Curve::new([(0.0, height), (end, height)]);
-    let points = heights
-        .iter()
-        .enumerate()
-        .map(|(tick, &height)| (time(tick), height));
+    let swing = |time: f64| mean + amplitude * (TAU * time / PERIOD).cos();
+    let time = |tick: usize| tick as f64 * f64::from(TICK);
+    let shown = 0..ticks(SHOWN);
+    let rest = AT_REST[0].2[1];
     Plot {
         x: "time [s]".into(),
-        y: "displacement of the end along y [mm]".into(),
+        y: "displacement along y [mm]".into(),
         curves: vec![
-            level(mean + amplitude).named("CSM3, highest and lowest"),
-            level(mean - amplitude),
-            level(AT_REST[0].2[1]).named("CSM1, at rest"),
+            Curve::sampled(0.0..=SHOWN, swing).named("mean, amplitude, period"),
+            Curve::new([(0.0, rest), (SHOWN, rest)]).named("at rest (CSM1)"),
         ],
-        points: vec![Points::new("measured, CSM3", points)],
+        points: vec![Points::new(
+            "measured (CSM3)",
+            shown.step_by(10).map(|tick| (time(tick), heights[tick])),
+        )],
         ..Plot::default()
     }
 }
