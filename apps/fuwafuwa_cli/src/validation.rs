@@ -162,10 +162,7 @@ fn markdown(folder: &str, sections: &[Section]) -> String {
             about,
             findings,
         } = section;
-        text += &format!(
-            "\n## {name}\n\n{}\n\n![{name}]({folder}/{name}.svg)\n\n",
-            about.trim()
-        );
+        text += &format!("\n## {name}\n\n{about}\n\n![{name}]({folder}/{name}.svg)\n\n",);
         text += "| # | case | measured | reference | bound | passed |\n| --- | --- | --- | --- | --- | --- |\n";
         for (index, outcome) in findings.outcomes.iter().enumerate() {
             text += &row(index + 1, outcome);

@@ -47,6 +47,8 @@ const LAST_DIGIT: [f64; 3] = [1e-4, 1e-4, 1e-2];
 const TOLERANCE: f64 = 0.02;
 /// Lowest frequency of the bar [Hz]. It sets Young's modulus.
 pub const FREQUENCY: f64 = 1.0;
+/// Poisson's ratio.
+pub const POISSON: f64 = 0.3;
 /// Time after which the bar is at rest [s]. Its vibrations are damped critically; 2 s give the same results.
 const SETTLING: f64 = 3.0;
 
@@ -203,17 +205,7 @@ impl Bar {
         let thickness = size[1] as f64 / size[0] as f64;
         let wave_speed = TAU * FREQUENCY * 12f64.sqrt() / (1.875_104 * 1.875_104 * thickness);
         let modulus = f64::from(usual.density) * wave_speed * wave_speed;
-        let poisson = 0.3;
-        let elasticity = Elasticity {
-            young: modulus * (1.0 - poisson * poisson),
-            poisson,
-        };
-        let material = Material {
-            elasticity,
-            damping,
-            strength: f32::INFINITY,
-            ..usual
-        };
+        let material = unbreakable(modulus, damping);
         Self { size, material }
     }
 
@@ -241,6 +233,20 @@ impl Bar {
         let thickness = self.thickness();
         let stiffness = self.modulus() * thickness * thickness / 12.0;
         weight * stiffness / f64::from(self.material.density)
+    }
+}
+
+/// Returns a material that does not tear, with the default density, a Poisson's ratio of [`POISSON`], and a modulus of
+/// bending in plane strain [Pa].
+pub fn unbreakable(modulus: f64, damping: Damping) -> Material {
+    Material {
+        elasticity: Elasticity {
+            young: modulus * (1.0 - POISSON * POISSON),
+            poisson: POISSON,
+        },
+        damping,
+        strength: f32::INFINITY,
+        ..Material::default()
     }
 }
 

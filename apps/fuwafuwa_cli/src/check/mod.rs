@@ -220,7 +220,8 @@ impl Which {
             name: value
                 .as_ref()
                 .map_or(String::new(), |value| value.get_name().to_owned()),
-            about: about.map_or(String::new(), ToString::to_string),
+            // The command line strips the full stop at the end.
+            about: about.map_or(String::new(), |about| format!("{about}.")),
             findings,
         }
     }

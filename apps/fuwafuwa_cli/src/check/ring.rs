@@ -13,12 +13,12 @@
 //! strain in 2D, so the ring bends with E' = E / (1 − ν²).
 //!
 //! The surface of a ring of voxels is a staircase, whose steps carry little load. A ring 8 voxels thick is therefore
-//! 10 % too soft, one of 16 voxels 4 %. The stiffness under a small force, solved exactly, is
-//! extrapolated to fine voxels and compared with the theory of thick rings, including stretching and shear. The large
-//! deflections are compared relative to the stiffness of the same ring under a small force. More voxels would take
-//! minutes, and thinner rings lose the force in the rounding of single precision.
+//! 10 % too soft, one of 16 voxels 4 %. The stiffness under a small force, solved exactly, is extrapolated to fine
+//! voxels and compared with the theory of thick rings, including stretching and shear. The force at large deflections
+//! is compared relative to the stiffness of the same ring under a small force. With 16 voxels the large deflections
+//! would take minutes, and thinner rings lose the force in the rounding of single precision.
 
-use super::elastica::{fix_where, place, plane_strain, still};
+use super::elastica::{POISSON, fix_where, place, plane_strain, still, unbreakable};
 use super::parallel;
 use super::shooting::{integrate, root};
 use super::statics::Statics;
@@ -35,8 +35,6 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 const SIZE: [usize; 2] = [80, 8];
 /// Radius and thickness [voxels] of a finer ring, of which only the stiffness under a small force is computed.
 const FINE: [usize; 2] = [160, 16];
-/// Poisson's ratio.
-const POISSON: f64 = 0.3;
 /// Forces p = P R² / E' I at which the ring is measured.
 const FORCES: [f64; 5] = [0.5, 1.0, 2.0, 3.0, 5.0];
 /// Diameter loss and side growth, relative to the diameter, with the digits of an independent solution of the same
@@ -175,16 +173,7 @@ fn pinch(loss: f64) -> Result<Pinched> {
     let depth = thickness as f64 / radius as f64;
     let wave_speed = TAU * FREQUENCY * 5f64.sqrt() / 6.0 * 12f64.sqrt() / depth;
     let modulus = f64::from(usual.density) * wave_speed * wave_speed;
-    let elasticity = Elasticity {
-        young: modulus * (1.0 - POISSON * POISSON),
-        poisson: POISSON,
-    };
-    let material = Material {
-        elasticity,
-        damping: Damping::at(1.0, FREQUENCY as f32),
-        strength: f32::INFINITY,
-        ..usual
-    };
+    let material = unbreakable(modulus, Damping::at(1.0, FREQUENCY as f32));
     let mut body = SoftBody::new(grid, &[material])?;
     let middle = across as i32 / 2;
     fix_where(&mut body, |at| at[0] == middle && at[1] < middle);
@@ -218,7 +207,7 @@ fn pinch(loss: f64) -> Result<Pinched> {
     let [left, right] = sides;
     let outer = 2.0 + depth;
     Ok(Pinched {
-        force: force / (plane_strain(elasticity) * inertia),
+        force: force / (modulus * inertia),
         loss,
         growth: 0.5 * (f64::from(right?.x - left?.x) - outer),
     })

@@ -128,8 +128,8 @@ fn plot(heights: &[f64]) -> Plot {
         x: "time [s]".into(),
         y: "displacement along y [mm]".into(),
         curves: vec![
-            Curve::sampled(0.0..=SHOWN, swing).named("mean, amplitude, period"),
-            Curve::new([(0.0, rest), (SHOWN, rest)]).named("at rest (CSM1)"),
+            Curve::sampled(0.0..=SHOWN, swing).named("published swing (CSM3)"),
+            Curve::new([(0.0, rest), (SHOWN, rest)]).named("published rest (CSM1)"),
         ],
         points: vec![Points::new(
             "measured (CSM3)",
