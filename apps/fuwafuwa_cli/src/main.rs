@@ -14,10 +14,12 @@ mod bench;
 mod check;
 mod count;
 mod figure;
+mod plot;
 mod replay;
 mod report;
 mod run;
 mod scan;
+mod validation;
 
 use anyhow::Result;
 use clap::{CommandFactory, Parser, Subcommand};

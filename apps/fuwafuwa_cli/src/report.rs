@@ -1,5 +1,6 @@
 //! Output of results: aligned tables, outcomes of checks, a progress bar.
 
+use crate::plot::Plot;
 use anyhow::Result;
 use fuwafuwa::{Dim, SoftBody, StiffBodies, World};
 use fuwafuwa_scenes::Scene;
@@ -46,6 +47,24 @@ pub fn warn_of_scales<D: Dim>(world: &World<D>) {
     ));
 }
 
+/// Results of a check.
+#[derive(Clone, Debug, Default)]
+pub struct Findings {
+    /// Measured values with their requirements.
+    pub outcomes: Vec<Outcome>,
+    /// Plots of measured values upon curves of a reference; empty if the check traces no curve.
+    pub plots: Vec<Plot>,
+}
+
+impl From<Vec<Outcome>> for Findings {
+    fn from(outcomes: Vec<Outcome>) -> Self {
+        Self {
+            outcomes,
+            plots: Vec::new(),
+        }
+    }
+}
+
 /// Outcome of a check for one measured value.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
@@ -55,6 +74,12 @@ pub struct Outcome {
     pub value: f64,
     /// Requirement on the measured value, as text.
     pub wanted: String,
+    /// Value of theory or of another reference; `None` if there is only a range or a limit.
+    pub reference: Option<f64>,
+    /// Smallest allowed value; `None` if there is no lower bound.
+    pub low: Option<f64>,
+    /// Largest allowed value; `None` if there is no upper bound.
+    pub high: Option<f64>,
     /// Whether the value meets the requirement; `None` if it is shown for comparison only.
     pub pass: Option<bool>,
 }
@@ -63,30 +88,40 @@ impl Outcome {
     /// Creates an outcome that passes if the value differs from `ideal` by at most `tolerance`.
     pub fn near(case: String, value: f64, ideal: f64, tolerance: f64) -> Self {
         Self {
-            case,
-            value,
-            wanted: format!("{ideal} +- {tolerance}"),
+            reference: Some(ideal),
+            low: Some(ideal - tolerance),
+            high: Some(ideal + tolerance),
             pass: Some((value - ideal).abs() <= tolerance),
+            ..Self::shown(case, value).wanting(format!("{} +- {tolerance}", digits(ideal)))
+        }
+    }
+
+    /// Creates an outcome that passes if the value differs from `reference` by at most the share `tolerance` of it.
+    pub fn relative(case: String, value: f64, reference: f64, tolerance: f64) -> Self {
+        let wanted = format!("{} +- {} %", digits(reference), 100.0 * tolerance);
+        Self {
+            wanted,
+            ..Self::near(case, value, reference, tolerance * reference.abs())
         }
     }
 
     /// Creates an outcome that passes if the value lies in a range.
     pub fn within(case: String, value: f64, range: RangeInclusive<f64>) -> Self {
+        let wanted = format!("{} to {}", range.start(), range.end());
         Self {
-            case,
-            value,
-            wanted: format!("{} to {}", range.start(), range.end()),
+            low: Some(*range.start()).filter(|low| low.is_finite()),
+            high: Some(*range.end()).filter(|high| high.is_finite()),
             pass: Some(range.contains(&value)),
+            ..Self::shown(case, value).wanting(wanted)
         }
     }
 
     /// Creates an outcome that passes if the value is at most `limit`; NaN fails.
     pub fn at_most(case: String, value: f64, limit: f64) -> Self {
         Self {
-            case,
-            value,
-            wanted: format!("<= {limit:e}"),
+            high: Some(limit),
             pass: Some(value <= limit),
+            ..Self::shown(case, value).wanting(format!("<= {limit:e}"))
         }
     }
 
@@ -96,9 +131,48 @@ impl Outcome {
             case,
             value,
             wanted: "for comparison".into(),
+            reference: None,
+            low: None,
+            high: None,
             pass: None,
         }
     }
+
+    /// Returns the deviation from the reference, or from the middle of the allowed range, in units of the bound:
+    /// from −1 to 1 if the value meets its requirement. With a limit on one side only, a passing value has a
+    /// deviation from 0 to 1. `None` if there is no bound.
+    pub fn deviation(&self) -> Option<f64> {
+        let deviation = match (self.low, self.high) {
+            (Some(low), Some(high)) => 2.0 * (self.value - 0.5 * (low + high)) / (high - low),
+            (None, Some(high)) => (self.value / high).max(0.0),
+            (Some(low), None) => low / self.value,
+            (None, None) => return None,
+        };
+        // A bound of 0 allows one value only.
+        Some(match deviation.is_nan() {
+            true if self.pass == Some(true) => 0.0,
+            true => f64::INFINITY,
+            false => deviation,
+        })
+    }
+
+    fn wanting(self, wanted: String) -> Self {
+        Self { wanted, ..self }
+    }
+}
+
+/// Formats a number with at most four significant digits, without trailing zeros. Numbers below 0.001 and from
+/// 100,000 on have an exponent.
+pub fn digits(value: f64) -> String {
+    let size = value.abs();
+    let scientific = format!("{value:.3e}");
+    let Ok(rounded) = scientific.parse::<f64>() else {
+        return scientific;
+    };
+    if rounded == 0.0 || (1e-3..1e5).contains(&size) {
+        return (rounded + 0.0).to_string();
+    }
+    format!("{rounded:e}")
 }
 
 /// Prints a value as JSON.
@@ -135,6 +209,11 @@ impl Progress {
     pub fn step(&self) {
         self.bar.inc(1);
         self.show_if_slow();
+    }
+
+    /// Hides the progress bar while `print` prints.
+    pub fn suspend<Printed>(&self, print: impl FnOnce() -> Printed) -> Printed {
+        self.bar.suspend(print)
     }
 
     /// Shows the progress bar if the command has run longer than [`PATIENCE`]. Cheap enough for inner loops.

@@ -158,6 +158,10 @@ const TEST: &[Step] = &[
         "the studio failed, or there is no graphics adapter, such as that of mesa-vulkan-drivers; see above",
     ),
     (
+        "test --workspace --all-features --test validation -- --ignored",
+        "a check of the mechanics failed, or docs/validation.md is out of date, see above",
+    ),
+    (
         "test --workspace --all-features --doc",
         "an example in the documentation failed or did not compile, see above",
     ),

@@ -11,7 +11,8 @@
 
 use super::parallel;
 use super::statics::Statics;
-use crate::report::{Outcome, Progress};
+use crate::plot::{Plot, Points};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::inspect::{CellHierarchy, Connectivity, Elasticity, Mesh};
 use fuwafuwa::{Dim, Dim2, Dim3, Grading, VoxelGrid};
@@ -33,7 +34,7 @@ struct Beam {
 }
 
 /// Compares tip deflections of 2D and 3D beams with Timoshenko's theory.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let mut beams = Vec::new();
     for dim in [2, 3] {
         for poisson in [0.0, 0.3] {
@@ -55,7 +56,30 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         );
         Outcome::near(case, value, 1.0, TOLERANCE)
     };
-    Ok(beams.iter().zip(ratios).map(outcome).collect())
+    let outcomes = beams.iter().zip(ratios.iter().copied()).map(outcome);
+    let outcomes = outcomes.collect();
+    let slenderness = |beam: &Beam| (beam.length / beam.thickness) as f64;
+    let rows = beams
+        .chunks(LENGTHS.len())
+        .zip(ratios.chunks(LENGTHS.len()));
+    let points = rows.map(|(beams, ratios)| {
+        let name = format!("{}D, Poisson's ratio {}", beams[0].dim, beams[0].poisson);
+        Points::new(
+            name,
+            beams.iter().map(slenderness).zip(ratios.iter().copied()),
+        )
+    });
+    let plot = Plot {
+        x: "length / thickness".into(),
+        y: "tip deflection / theory".into(),
+        points: points.collect(),
+        band: Some(1.0 - TOLERANCE..=1.0 + TOLERANCE),
+        ..Plot::default()
+    };
+    Ok(Findings {
+        outcomes,
+        plots: vec![plot],
+    })
 }
 
 impl Beam {

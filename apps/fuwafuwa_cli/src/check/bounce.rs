@@ -5,7 +5,8 @@
 use super::motion::throw;
 use super::parallel;
 use super::scale::floor;
-use crate::report::{Outcome, Progress};
+use crate::plot::{Curve, Plot, Points};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Result, bail};
 use fuwafuwa::{
     Dim, Dim2, Dim3, DimVector, Material, RigidBody, SoftBody, StiffBodies, Vec3, VoxelGrid, World,
@@ -25,7 +26,7 @@ const BOUNDED: f64 = 4.2;
 const TOLERANCE: f64 = 0.2;
 
 /// Compares restitutions.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let cases: Vec<_> = { BODIES.iter() }
         .flat_map(|&body| SPEEDS.map(|speed| (body, speed)))
         .flat_map(|(body, speed)| WIDTHS.map(|width| (body, speed, width)))
@@ -47,7 +48,31 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
             false => Outcome::shown(case, restitution - exact),
         }
     };
-    Ok(cases.iter().zip(found).map(outcome).collect())
+    let outcomes = cases.iter().zip(found.iter().copied()).map(outcome);
+    let outcomes = outcomes.collect();
+    let points = found
+        .iter()
+        .map(|&[(exact, _), (restitution, scale)]| (scale, restitution - exact));
+    let (bounded, others): (Vec<_>, Vec<_>) = points.partition(|&(scale, _)| scale <= BOUNDED);
+    let limit = |at: f64| Curve::new([(1.0, at), (BOUNDED, at)]);
+    let plot = Plot {
+        x: "mass scale".into(),
+        y: "restitution minus that of an exact body".into(),
+        curves: vec![
+            limit(TOLERANCE).named("bound"),
+            limit(-TOLERANCE).named("bound"),
+        ],
+        points: vec![
+            Points::new("measured", bounded),
+            Points::new("for comparison", others),
+        ],
+        is_log: [true, false],
+        ..Plot::default()
+    };
+    Ok(Findings {
+        outcomes,
+        plots: vec![plot],
+    })
 }
 
 /// Returns the restitution and the mass scale of an exact and of a mass-scaled body.

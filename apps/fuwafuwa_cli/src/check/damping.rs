@@ -8,7 +8,8 @@
 
 use super::motion::{arrange, material};
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::plot::{Curve, Plot, Points};
+use crate::report::{Findings, Outcome, Progress, digits};
 use anyhow::Result;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
@@ -100,7 +101,7 @@ const fn stiffness(stiffness: f32) -> Damping {
 
 /// Lowest vibration mode of its kind.
 #[derive(Copy, Clone, Debug)]
-enum Mode {
+pub enum Mode {
     /// Free bar that is stretched and compressed. With a Poisson's ratio of 0, u = sin(πx / L) is exact at
     /// every shape.
     Longitudinal,
@@ -117,7 +118,7 @@ enum Mode {
 impl Mode {
     /// Returns the displacement along the bar at `x` from the middle of a bar of length 1, and `y` from its
     /// axis.
-    fn shape(self, x: f64, y: f64) -> (f64, f64) {
+    pub fn shape(self, x: f64, y: f64) -> (f64, f64) {
         // Roots k of cos k cosh k = 1 and of cos k cosh k = −1, with the factor of the sines (cosh k ∓ cos k)
         // / (sinh k ∓ sin k).
         let along = x + 0.5;
@@ -159,19 +160,20 @@ impl Mode {
 
 /// Measured vibration.
 #[derive(Copy, Clone, Debug)]
-struct Vibration {
+pub struct Vibration {
     /// Angular frequency without damping [rad/s].
-    frequency: f64,
+    pub frequency: f64,
     /// Damping ratio.
-    ratio: f64,
+    pub ratio: f64,
 }
 
 /// Compares measured damping ratios with the law.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let bars = parallel::each(&BARS, progress, |&(n, across, mode, damping)| {
         bar(n, across, mode, damping)
     })?;
     let mut outcomes = Vec::new();
+    let plot = plot(&bars);
     for ((n, across, mode, damping), (found, law)) in BARS.iter().zip(bars) {
         let case = format!(
             "damping {}/s {:.2} ms, {}, {n} x {across} ({:.2} Hz, ratio {law:.4}), ratio / law",
@@ -198,7 +200,47 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let case = format!("damping of two materials, {n} x {across}, ratio {law:.4}, ratio / law");
         outcomes.push(Outcome::near(case, found.ratio / law, 1.0, TOLERANCE));
     }
-    Ok(outcomes)
+    Ok(Findings {
+        outcomes,
+        plots: vec![plot],
+    })
+}
+
+/// Plots the damping ratios of bars over their frequency, with a curve of the law for each damping. Leaves out
+/// [`TOO_STIFF`], which does not act in full.
+fn plot(found: &[(Vibration, f64)]) -> Plot {
+    let mut dampings: Vec<Damping> = Vec::new();
+    for &(.., damping) in BARS.iter().filter(|(.., damping)| *damping != TOO_STIFF) {
+        if !dampings.contains(&damping) {
+            dampings.push(damping);
+        }
+    }
+    let name = |damping: Damping| match damping.mass > 0.0 {
+        true => format!("α = {} 1/s", damping.mass),
+        false => format!("β = {} ms", digits(1e3 * f64::from(damping.stiffness))),
+    };
+    let mut plot = Plot {
+        x: "frequency [Hz]".into(),
+        y: "damping ratio".into(),
+        is_log: [true, true],
+        ..Plot::default()
+    };
+    for damping in dampings {
+        let of = { BARS.iter().zip(found) }.filter(|((.., own), _)| *own == damping);
+        let points: Vec<(f64, f64)> = of
+            .map(|(_, (vibration, _))| (vibration.frequency / TAU, vibration.ratio))
+            .collect();
+        let low = points
+            .iter()
+            .fold(f64::INFINITY, |low, point| low.min(point.0));
+        let high = points.iter().fold(0.0f64, |high, point| high.max(point.0));
+        // The law is a straight line on logarithmic axes.
+        let law = |frequency: f64| (frequency, f64::from(damping.ratio(frequency as f32)));
+        plot.curves
+            .push(Curve::new([law(0.8 * low), law(1.25 * high)]).named(name(damping)));
+        plot.points.push(Points::new(name(damping), points));
+    }
+    plot
 }
 
 /// Returns the vibration of a 2D bar, and the ratio of the law.
@@ -345,7 +387,7 @@ fn vibration<D: Dim>(
 /// Returns the damped vibration that fits samples at equal intervals [s] best, by least squares. Other modes
 /// of the body hardly affect it, because their frequencies differ. `expected` is the expected vibration; the
 /// frequency may differ from it by up to 30 %.
-fn vibration_in(samples: &[f64], interval: f64, expected: Vibration) -> Vibration {
+pub fn vibration_in(samples: &[f64], interval: f64, expected: Vibration) -> Vibration {
     let error = |decay: f64, damped: f64| fit_error(samples, interval, decay, damped);
     let guess = expected.ratio * expected.frequency;
     let scan = (0..=120).map(|k| expected.frequency * (0.7 + 0.005 * f64::from(k)));

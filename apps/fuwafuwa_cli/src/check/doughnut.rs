@@ -2,7 +2,7 @@
 
 use super::motion::material;
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::{
     Dim, Dim2, Dim3, DimVector, Material, NodeId, RigidBody, Shape, SoftBody, Vec3, VoxelGrid,
@@ -41,7 +41,7 @@ const DEPTH: f64 = 0.5;
 const SHUT: f64 = 2.0;
 
 /// Squeezes rings of several sizes, slowly and fast.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let depths = parallel::each(&CASES, progress, |&(dim, n, speed)| match dim {
         2 => squeeze::<Dim2>(n, speed),
         _ => squeeze::<Dim3>(n, speed),
@@ -50,7 +50,8 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let case = format!("doughnut {dim}D n = {n}, {speed} m/s, self-penetration in voxels");
         Outcome::within(case, depth, -SHUT..=DEPTH)
     };
-    Ok(CASES.iter().zip(depths).map(outcome).collect())
+    let outcomes: Vec<Outcome> = CASES.iter().zip(depths).map(outcome).collect();
+    Ok(outcomes.into())
 }
 
 /// Squeezes a ring and returns the maximum penetration of the upper side of the hole into the lower one

@@ -3,7 +3,7 @@
 
 use super::motion::centre;
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
@@ -22,7 +22,7 @@ const DURATION: f32 = 2.0;
 const TOLERANCE: f64 = 0.01;
 
 /// Compares the shape at the edge of the range with that at the origin, in 2D and 3D, of soft and hard bodies.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let cases = [(2, 16, 1e3), (2, 16, 4e3), (3, 12, 1e3), (3, 12, 4e3)];
     let found = parallel::each(&cases, progress, |&(dim, n, young)| match dim {
         2 => measure::<Dim2>(n, young),
@@ -39,7 +39,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let refused = f64::from(u8::from(is_refused));
         outcomes.push(Outcome::near(case("refused beyond"), refused, 1.0, 0.0));
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 /// Returns the largest difference of the shapes [voxels], and whether the body is refused beyond its range.

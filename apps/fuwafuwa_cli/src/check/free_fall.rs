@@ -4,7 +4,8 @@
 use super::motion::{centre, throw};
 use super::parallel;
 use super::scale::{TREATMENTS, name};
-use crate::report::{Outcome, Progress};
+use crate::plot::{Curve, Plot, Points};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::{
@@ -28,7 +29,7 @@ const DISTANCE: f32 = 1e5;
 const TOLERANCE: f64 = 0.001;
 
 /// Compares position and velocity with v t + ½ g t² and v + g t.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let cases: Vec<_> = { BODIES.iter() }
         .flat_map(|&body| WIDTHS.map(|width| (body, width)))
         .flat_map(|(body, width)| SPEEDS.map(|speed| (body, width, speed)))
@@ -53,7 +54,32 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         );
         Outcome::at_most(case, worst, TOLERANCE)
     };
-    Ok(cases.iter().zip(found).map(outcome).collect())
+    let outcomes = cases.iter().zip(found.iter().copied()).map(outcome);
+    let outcomes = outcomes.collect();
+    let series = |treatment| {
+        let of = cases
+            .iter()
+            .zip(&found)
+            .filter(move |(case, _)| case.3 == treatment);
+        Points::new(
+            name(treatment),
+            of.map(|(&(_, width, ..), &worst)| (1e3 * f64::from(width), worst)),
+        )
+    };
+    let [narrow, .., wide] =
+        [WIDTHS[WIDTHS.len() - 1], 0.0, WIDTHS[0]].map(|width| 1e3 * f64::from(width));
+    let plot = Plot {
+        x: "width of the body [mm]".into(),
+        y: "worst relative difference".into(),
+        curves: vec![Curve::new([(narrow, TOLERANCE), (wide, TOLERANCE)]).named("bound")],
+        points: TREATMENTS.map(series).into(),
+        is_log: [true, true],
+        ..Plot::default()
+    };
+    Ok(Findings {
+        outcomes,
+        plots: vec![plot],
+    })
 }
 
 /// Returns the larger of the relative errors of position and velocity, compared with a point mass.

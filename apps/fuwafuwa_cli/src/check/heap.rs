@@ -1,7 +1,7 @@
 //! Heaps: balls and cubes fall into a pen, come to rest, fall asleep and stay asleep.
 
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
@@ -39,7 +39,7 @@ const MATERIALS: [Named; 3] = [
 ];
 
 /// Drops heaps of three materials in 2D and in 3D.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let cases: Vec<(usize, Named)> = [2, 3]
         .into_iter()
         .flat_map(|dim| MATERIALS.map(|named| (dim, named)))
@@ -56,7 +56,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let woken = case("bodies that woke later");
         outcomes.push(Outcome::at_most(woken, heap.woken as f64, 0.0));
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 /// Drops bodies with `n` voxels across into a pen that is four bodies wide, in 3D three by two bodies.

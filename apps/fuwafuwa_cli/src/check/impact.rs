@@ -4,7 +4,7 @@
 use super::motion::{centre, material, throw};
 use super::parallel;
 use super::scale::{TREATMENTS, name};
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Context, Result, ensure};
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::{
@@ -27,8 +27,10 @@ const SPEEDS: [f32; 4] = [10.0, 30.0, 60.0, 300.0];
 const PLATE: f32 = 0.02;
 /// Maximum distance by which the surface of a body enters the plate [m]. The plate pushes it out to the nearer side.
 const ENTERED: f64 = 0.4 * PLATE as f64;
-/// Distance from which bodies start [m]; small ones start within half the range of positions of their voxels.
+/// Maximum distance from which the bodies start [m].
 const DISTANCE: f32 = 2.0;
+/// Maximum distance from which the bodies start [voxels]. From 8192 voxels on, bodies are out of range.
+const VOXELS: f32 = 4000.0;
 /// Maximum change of the momentum of two bodies that hit each other, relative to the momentum of one body.
 /// Bodies of 2 mm that meet 1 m from the origin lose a percent by rounding.
 const MOMENTUM: f64 = 0.02;
@@ -43,7 +45,7 @@ const CARRIERS: [(usize, f32); 2] = [(2, 20.0), (3, 50.0)];
 const PINNED: f64 = 1.0;
 
 /// Throws bodies at a plate and at each other, and pulls them by a pin.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let cases: Vec<_> = { BODIES.iter() }
         .flat_map(|&body| SPEEDS.map(|speed| (body, speed)))
         .flat_map(|(body, speed)| TREATMENTS.map(|treatment| (body, speed, treatment)))
@@ -88,7 +90,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let case = format!("pin on a carrier {dim}D, {speed} m/s, gap [voxels]");
         outcomes.push(Outcome::at_most(case, gap, PINNED));
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 /// Result of an impact.
@@ -119,6 +121,11 @@ fn both_impacts<D: Dim>(
     ])
 }
 
+/// Returns the distance [m] from which bodies with `n` voxels across start.
+fn distance(n: usize, width: f32) -> f32 {
+    DISTANCE.min(VOXELS * width / n as f32)
+}
+
 fn vector<D: Dim>(x: f32, y: f32, z: f32) -> D::Vector {
     D::Vector::from_vec3(Vec3::new(x, y, if D::N == 3 { z } else { 0.0 }))
 }
@@ -147,30 +154,26 @@ fn add_ball<D: Dim>(
     Ok(body)
 }
 
-/// Returns the distance from which bodies of `n` voxels across `width` [m] start [m].
-fn distance(n: usize, width: f32) -> f32 {
-    DISTANCE.min(4096.0 * width / n as f32)
-}
-
-/// Steps for twice the time `flight` [s], and half a second. `look` is called after each tick. Returns the number of
-/// events of slowed impacts, and the duration of a substep [s].
+/// Steps for as long as a body at `speed` needs for twice a distance [m], and half a second. `look` is called after
+/// each tick. Returns the number of events of slowed impacts, and the distance of a substep [m].
 fn run<D: Dim>(
     world: &mut World<D>,
-    flight: f32,
+    distance: f32,
+    speed: f32,
     mut look: impl FnMut(&mut World<D>),
 ) -> Result<(f64, f32)> {
-    let ticks = (120.0 * flight) as usize + 30;
-    let (mut slowed, mut substep) = (0, 0.0);
+    let ticks = (120.0 * distance / speed) as usize + 30;
+    let (mut slowed, mut moved) = (0, 0.0);
     for _ in 0..ticks {
         let report = world.step();
         ensure!(report.quarantined == 0, "a body was quarantined");
-        substep = 1.0 / (60 * report.substeps) as f32;
+        moved = speed / (60 * report.substeps) as f32;
         let events = world.events().iter();
         let events = events.filter(|event| matches!(event, Event::ImpactSlowed { .. }));
         slowed += events.count();
         look(world);
     }
-    Ok((slowed as f64, substep))
+    Ok((slowed as f64, moved))
 }
 
 /// Throws a ball at a plate.
@@ -185,14 +188,14 @@ fn on_plate<D: Dim>(n: usize, width: f32, speed: f32, treatment: StiffBodies) ->
     let at = [0.013 * width, distance + 0.5 * width];
     let body = add_ball(&mut world, n, width, at, -speed)?;
     let mut entered = 0.0f64;
-    let (slowed, substep) = run(&mut world, distance / speed, |world| {
+    let (slowed, moved) = run(&mut world, distance, speed, |world| {
         let pieces = world[body].piece_views().into_iter();
         let lowest = pieces.map(|piece| piece.low.y);
         entered = entered.max(f64::from(-lowest.fold(f32::INFINITY, f32::min)));
     })?;
     Ok(Impact {
         entered,
-        is_fast: speed * substep > (width / n as f32).min(0.5 * PLATE),
+        is_fast: moved > (width / n as f32).min(0.5 * PLATE),
         slowed,
         ..Impact::default()
     })
@@ -221,7 +224,7 @@ fn on_each_other<D: Dim>(
     };
     let before = total(&world);
     let (mut entered, mut momentum) = (0.0f64, 0.0f64);
-    let (slowed, substep) = run(&mut world, distance / speed, |world| {
+    let (slowed, moved) = run(&mut world, distance, speed, |world| {
         let apart = centre(&world[balls[0]]).y - centre(&world[balls[1]]).y;
         entered = entered.max(1.0 - apart / f64::from(width));
         momentum = momentum.max((total(world) - before).length() / one);
@@ -230,7 +233,7 @@ fn on_each_other<D: Dim>(
         balls.map(|ball| world[ball].momentum().linear.y / world[ball].total_mass());
     Ok(Impact {
         entered,
-        is_fast: speed * substep > width / n as f32,
+        is_fast: moved > width / n as f32,
         slowed,
         approach: (lower - upper) / f64::from(speed),
         momentum,

@@ -3,7 +3,7 @@
 use super::motion::{arrange, ball, material};
 use super::parallel;
 use super::random::Random;
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Result, anyhow};
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Grading, Point, Vec3};
 
@@ -17,7 +17,7 @@ const BETWEEN_STEPS: usize = 10;
 const TOLERANCE: f64 = 1e-4;
 
 /// Measures the drift of mass, linear and angular momentum over random releases.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let found = parallel::each(&BODIES, progress, |&(dim, n)| match dim {
         2 => drifts::<Dim2>(n, RELEASES),
         _ => drifts::<Dim3>(n, RELEASES),
@@ -32,7 +32,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
             outcomes.push(Outcome::at_most(case, drift, TOLERANCE));
         }
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 /// Returns the relative changes of mass, linear and angular momentum caused by `releases` random releases.

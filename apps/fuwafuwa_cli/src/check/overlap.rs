@@ -2,7 +2,7 @@
 //! until then.
 
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::{
     Dim, Dim2, Dim3, DimVector, Event, Material, RigidBody, Shape, SoftBody, Vec3, VoxelGrid,
@@ -42,7 +42,7 @@ struct Found {
 }
 
 /// Places balls in other objects, in 2D and 3D, without gravity.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let cases = [
         Case::Ball(0.22),
         Case::Ball(0.0),
@@ -78,7 +78,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
             DEPTH,
         ));
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 fn measure<D: Dim>(case: Case, duration: f32) -> Result<Found> {

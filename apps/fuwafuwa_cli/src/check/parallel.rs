@@ -3,6 +3,38 @@
 use crate::report::Progress;
 use anyhow::{Result, anyhow};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Condvar, Mutex, PoisonError};
+
+/// Number of cases that run at the present, over all checks, and a signal when one ends.
+static RUNNING: (Mutex<usize>, Condvar) = (Mutex::new(0), Condvar::new());
+
+/// Permission to run a case. At most as many exist as the machine has threads, so that checks which run side by side
+/// do not hold each other up.
+struct Permit;
+
+impl Permit {
+    /// Waits for a permission.
+    fn wait() -> Self {
+        let (running, ended) = &RUNNING;
+        let count = running.lock().unwrap_or_else(PoisonError::into_inner);
+        let count = ended.wait_while(count, |count| *count >= threads());
+        *count.unwrap_or_else(PoisonError::into_inner) += 1;
+        Self
+    }
+}
+
+impl Drop for Permit {
+    fn drop(&mut self) {
+        let (running, ended) = &RUNNING;
+        *running.lock().unwrap_or_else(PoisonError::into_inner) -= 1;
+        ended.notify_one();
+    }
+}
+
+/// Returns the number of threads of the machine.
+pub fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
 
 /// Returns the results of `work` for all cases, in the order of the cases. Starts with the last cases, which
 /// are usually the slowest.
@@ -15,7 +47,7 @@ pub fn each<Case: Sync, Outcome: Send>(
     work: impl Fn(&Case) -> Result<Outcome> + Sync,
 ) -> Result<Vec<Outcome>> {
     progress.expect(cases.len() as u64);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = threads().min(cases.len());
     let next = AtomicUsize::new(0);
     let run = || {
         let mut done = Vec::new();
@@ -24,7 +56,9 @@ pub fn each<Case: Sync, Outcome: Send>(
             let Some(index) = cases.len().checked_sub(taken + 1) else {
                 return done;
             };
+            let permit = Permit::wait();
             done.push((index, work(&cases[index])));
+            drop(permit);
             progress.step();
         }
     };

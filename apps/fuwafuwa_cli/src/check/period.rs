@@ -3,7 +3,7 @@
 
 use super::motion::{arrange, at_rest, ball, material};
 use super::{energy, parallel};
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Grading, NodeId, SoftBody, Vec3};
@@ -25,7 +25,7 @@ const DURATION: f64 = 5.0;
 const LAST: f64 = 0.5;
 
 /// Compares periods of graded and uniform bodies, and checks the energy of both.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let found = parallel::each(&BODIES, progress, |&(dim, n)| match dim {
         2 => rings::<Dim2>(n, progress),
         _ => rings::<Dim3>(n, progress),
@@ -47,7 +47,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
             KEPT,
         ));
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 /// Measurements of an oscillating body.

@@ -1,7 +1,7 @@
 //! Piles: a block of crumbs (pieces of one voxel) falls into a bin and comes to rest; no piece is lost.
 
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, MotionType, Shape, SoftBody};
 use fuwafuwa_scenes::Scene;
@@ -23,7 +23,7 @@ struct Pile {
 }
 
 /// Drops the crumbs of the scenes `pile` and `pile-3d`.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let piles = parallel::each(&SCENES, progress, |name| {
         let scene = Scene::open(name, &[])?;
         match scene.dim {
@@ -49,7 +49,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
             0.0..=PATIENCE,
         ));
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 fn fall<D: Dim>(scene: &Scene) -> Result<Pile> {

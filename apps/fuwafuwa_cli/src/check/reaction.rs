@@ -2,7 +2,7 @@
 //! stretched bar must pull with Young's modulus times area times strain.
 
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
@@ -22,7 +22,7 @@ const STRAIN: f64 = 0.02;
 const TOLERANCE: f64 = 0.016;
 
 /// Measures reactions in 2D and 3D, relative to theory.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let found = parallel::each(&[2, 3], progress, |&dim| match dim {
         2 => measure::<Dim2>(),
         _ => measure::<Dim3>(),
@@ -34,7 +34,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
             outcomes.push(Outcome::near(case, ratio, 1.0, TOLERANCE));
         }
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 fn measure<D: Dim>() -> Result<Vec<(&'static str, f64)>> {

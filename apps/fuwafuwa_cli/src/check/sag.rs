@@ -12,7 +12,7 @@
 use super::motion::material;
 use super::parallel;
 use super::statics::Statics;
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::inspect::{CellHierarchy, Connectivity, Mesh};
 use fuwafuwa::{Dim, Dim2, Dim3, Grading, VoxelGrid};
@@ -40,10 +40,10 @@ const REFERENCES: [(usize, usize); 2] = [(2, 256), (3, 64)];
 const CONVERGED: f64 = 0.01;
 
 /// Compares the sag of graded bodies with that of uniform ones.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let mut outcomes = check_round(progress)?;
     outcomes.extend(check_boxes(progress)?);
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 fn check_boxes(progress: &Progress) -> Result<Vec<Outcome>> {

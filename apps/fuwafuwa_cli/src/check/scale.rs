@@ -6,7 +6,8 @@
 //! tears must be the same; its period is √s times longer, which is shown only.
 
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::plot::{Plot, Points};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Result, bail};
 use fuwafuwa::{
     Damping, Dim, Dim2, Dim3, DimVector, Hooks, Material, RigidBody, Shape, SoftBody, StiffBodies,
@@ -56,11 +57,25 @@ enum Kind {
     Period,
 }
 
+/// One case: measurement, treatment, and width of the body [m].
+type Case = (Kind, StiffBodies, f32);
+
+impl Kind {
+    /// Name in the legend of a plot.
+    fn short(self) -> String {
+        match self {
+            Self::Height { dim, .. } => format!("height at rest, {dim}D"),
+            Self::Load => "tearing load".into(),
+            Self::Period => "period".into(),
+        }
+    }
+}
+
 /// Compares heights at rest, loads and periods.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let kinds = BALLS.map(|(dim, n)| Kind::Height { dim, n });
     let kinds = kinds.into_iter().chain([Kind::Load, Kind::Period]);
-    let cases: Vec<_> = kinds
+    let cases: Vec<Case> = kinds
         .flat_map(|kind| COMPARED.map(|treatment| (kind, treatment)))
         .flat_map(|(kind, treatment)| WIDTHS.map(|width| (kind, treatment, width)))
         .collect();
@@ -85,11 +100,36 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
             false => Outcome::near(case, ratio, 1.0, TOLERANCE),
         }
     };
-    let mut outcomes: Vec<Outcome> = cases.iter().zip(found).map(outcome).collect();
+    let outcomes = cases.iter().zip(found.iter().copied()).map(outcome);
+    let mut outcomes: Vec<Outcome> = outcomes.collect();
     let (reference, _) = load(StiffBodies::Exact, 1.0)?;
     let case = "scale exact, 1000 mm wide, 2D bar, tearing load / (strength × section)";
     outcomes.push(Outcome::near(case.into(), reference, 1.0, LOAD_TOLERANCE));
-    Ok(outcomes)
+    let plots = COMPARED.map(|treatment| {
+        let rows = cases.chunks(WIDTHS.len()).zip(found.chunks(WIDTHS.len()));
+        let rows = rows.filter(|(cases, _)| cases[0].1 == treatment);
+        // The periods of scaled bodies are shown in the table only.
+        let is_bounded = |kind, scale| kind != Kind::Period || scale == 1.0;
+        let points = rows.map(|(cases, found)| {
+            let points = cases.iter().zip(found);
+            let points = points.filter(|((kind, ..), (_, scale))| is_bounded(*kind, *scale));
+            let point =
+                |(&(.., width), &(ratio, _)): (&Case, &(f64, f64))| (1e3 * f64::from(width), ratio);
+            Points::new(cases[0].0.short(), points.map(point))
+        });
+        Plot {
+            x: format!("width of the body [mm], {}", name(treatment)),
+            y: "measured / reference".into(),
+            points: points.collect(),
+            band: Some(1.0 - TOLERANCE..=1.0 + TOLERANCE),
+            is_log: [true, false],
+            ..Plot::default()
+        }
+    });
+    Ok(Findings {
+        outcomes,
+        plots: plots.into(),
+    })
 }
 
 /// Name of a treatment in the outcomes.

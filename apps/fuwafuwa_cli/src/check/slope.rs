@@ -9,7 +9,8 @@
 //! ```
 
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::plot::{Curve, Plot, Points};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
@@ -56,7 +57,7 @@ pub struct Slide {
 type Case = (usize, bool, f32, f32);
 
 /// Lets soft and rigid blocks slide in 2D and in 3D.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let mut cases: Vec<Case> = Vec::new();
     for dim in [2, 3] {
         for rigid in [false, true] {
@@ -73,10 +74,31 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
             _ => slide::<Dim3>(rigid, friction, slope, DURATION),
         },
     )?;
-    let outcomes = cases.iter().zip(found);
-    Ok(outcomes
-        .map(|(case, slide)| outcome(*case, slide))
-        .collect())
+    let series = |friction: f32| {
+        let of = cases
+            .iter()
+            .zip(&found)
+            .filter(move |(case, _)| case.2 == friction);
+        let points = of.map(|(case, slide)| (f64::from(case.3), slide.speed));
+        Points::new(format!("friction {friction}"), points)
+    };
+    let steepest = f64::from(SLOPES.into_iter().fold(0.0, f32::max));
+    let theory = |friction: f32| {
+        let speed = move |slope: f64| (coulomb(friction, slope as f32) * DURATION).max(0.0);
+        Curve::sampled(0.0..=steepest, speed).named(format!("friction {friction}"))
+    };
+    let plot = Plot {
+        x: "slope".into(),
+        y: "speed after 10 s [m/s]".into(),
+        curves: FRICTIONS.map(theory).into(),
+        points: FRICTIONS.map(series).into(),
+        ..Plot::default()
+    };
+    let outcomes = cases.iter().zip(found.iter().copied());
+    Ok(Findings {
+        outcomes: { outcomes.map(|(case, slide)| outcome(*case, slide)) }.collect(),
+        plots: vec![plot],
+    })
 }
 
 fn outcome((dim, rigid, friction, slope): Case, slide: Slide) -> Outcome {

@@ -3,7 +3,7 @@
 use super::parallel;
 use super::slope::{coulomb, slide};
 use super::statics::Statics;
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
@@ -27,7 +27,7 @@ const SLOPES: [f32; 2] = [0.015, 0.01];
 const SPEED_TOLERANCE: f64 = 0.01;
 
 /// Lets bodies sag, float and slide slowly.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let case = "cantilever 64 x 4, gravity 0.05, sag / static solution".to_owned();
     let sag = sag(progress)?;
     let mut outcomes = vec![Outcome::near(case, sag, 1.0, SAG_TOLERANCE)];
@@ -56,7 +56,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         let ratio = slide.speed / (10.0 * coulomb(0.0, slope));
         outcomes.push(Outcome::near(case, ratio, 1.0, SPEED_TOLERANCE));
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 /// Returns the sag of the cantilever's tip when it has fallen asleep, or after [`SAGGING`], relative to its

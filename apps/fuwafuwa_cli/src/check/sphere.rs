@@ -12,7 +12,8 @@
 
 use super::motion::{centre, material};
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::plot::{Curve, Plot, Points};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::Result;
 use fuwafuwa::{
     Damping, Dim3, Material, RigidBody, RigidBodyHandle, Rotation, Shape, SoftBody, SoftBodyHandle,
@@ -75,7 +76,7 @@ impl Case {
 }
 
 /// Presses balls of 16 and 32 voxels between plates and on each other.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let mut cases = Vec::new();
     for n in [16, 32] {
         for balls in [1, 2] {
@@ -84,24 +85,37 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         cases.push(Case::new(n, 1, false, false));
     }
     let found = parallel::each(&cases, progress, |&case| press(case, &DEPTHS))?;
-    let mut outcomes = Vec::new();
+    let mut findings = Findings::default();
+    let mut plot = Plot {
+        x: "depth / width".into(),
+        y: "force / E R²".into(),
+        curves: vec![Curve::sampled(0.005..=0.11, reference).named("theory, plate")],
+        is_log: [true; 2],
+        ..Plot::default()
+    };
     for (case, forces) in cases.iter().zip(found) {
         let contact = if case.balls == 1 { "plate" } else { "ball" };
         let lattice = if case.turned { "turned" } else { "aligned" };
         let surface = if case.known { "known" } else { "smoothed" };
+        if case.known && case.balls == 1 {
+            let places = forces.iter().map(|&(force, at)| (at, force));
+            plot.points
+                .push(Points::new(format!("n = {}, {lattice}", case.n), places));
+        }
         for (depth, (force, at)) in DEPTHS.into_iter().zip(forces) {
             let name = format!(
                 "sphere {surface}, n = {}, {lattice}, {contact}, depth {depth}, force / theory",
                 case.n
             );
             let ratio = force / reference(at);
-            outcomes.push(match case.tolerance(depth) {
+            findings.outcomes.push(match case.tolerance(depth) {
                 Some(tolerance) => Outcome::near(name, ratio, 1.0, tolerance),
                 None => Outcome::shown(name, ratio),
             });
         }
     }
-    Ok(outcomes)
+    findings.plots.push(plot);
+    Ok(findings)
 }
 
 /// Returns the force of a rigid plate that presses into a ball by `depth` widths, as a multiple of Young's modulus and

@@ -2,7 +2,7 @@
 
 use super::motion::{arrange, ball, material};
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::{
@@ -33,7 +33,7 @@ const APART: f32 = 1.0;
 
 /// Measures the fraction of angular momentum, along its initial direction, that bodies keep. They start at 5
 /// rad/s.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let found = parallel::each(&BODIES, progress, |&(dim, n, damping)| match dim {
         2 => kept::<Dim2>(n, damping),
         _ => kept::<Dim3>(n, damping),
@@ -58,7 +58,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         outcomes.push(spin("momentum of a torn half", halves.momentum));
         outcomes.push(spin("spin of both halves", halves.both));
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 /// Fractions of momentum and angular momentum that the halves of a cut body keep. Each value is that of the

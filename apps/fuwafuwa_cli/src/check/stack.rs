@@ -2,7 +2,7 @@
 
 use super::motion::material;
 use super::parallel;
-use crate::report::{Outcome, Progress};
+use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Result, ensure};
 use fuwafuwa::inspect::Elasticity;
 use fuwafuwa::{
@@ -35,7 +35,7 @@ struct Stack {
 }
 
 /// Simulates stacks of boxes in 2D and 3D.
-pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
+pub fn check(progress: &Progress) -> Result<Findings> {
     let found = parallel::each(&[2, 3], progress, |&dim| match dim {
         2 => stand::<Dim2>(BODIES, DURATION),
         _ => stand::<Dim3>(BODIES, DURATION),
@@ -47,7 +47,7 @@ pub fn check(progress: &Progress) -> Result<Vec<Outcome>> {
         outcomes.push(Outcome::at_most(case("leaning"), stack.leaning, LEANING));
         outcomes.push(Outcome::at_most(case("motion"), stack.motion, MOTION));
     }
-    Ok(outcomes)
+    Ok(outcomes.into())
 }
 
 fn stand<D: Dim>(bodies: usize, duration: f32) -> Result<Stack> {

@@ -1,0 +1,286 @@
+//! Report of checks: a Markdown file, and a picture of each check in a folder beside it.
+//!
+//! The report has the same bytes at every run, on every machine and on any number of threads: it contains no time,
+//! and numbers with few digits.
+
+use crate::plot::{svg_of_deviations, svg_of_plots};
+use crate::report::{Findings, Outcome, digits};
+use anyhow::{Context, Result};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Share of its bound below which a deviation from 0 is not told exactly: it consists of rounding errors, which
+/// differ between standard libraries.
+const NOTHING: f64 = 1e-3;
+
+/// Findings of a check with its description.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// Name of the check on the command line.
+    pub name: String,
+    /// Description of the check, with the source of its reference.
+    pub about: String,
+    /// Results of the check.
+    pub findings: Findings,
+}
+
+/// File of a report.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReportFile {
+    /// Path of the file.
+    pub path: PathBuf,
+    /// Content of the file.
+    pub text: String,
+}
+
+/// Returns the files of the report whose Markdown file has the given path.
+pub fn files(path: &Path, sections: &[Section]) -> Vec<ReportFile> {
+    let folder = path.with_extension("");
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let mut files = vec![ReportFile {
+        path: path.to_path_buf(),
+        text: markdown(&name, sections),
+    }];
+    files.extend(sections.iter().map(|section| ReportFile {
+        path: folder.join(format!("{}.svg", section.name)),
+        text: picture(&section.findings),
+    }));
+    files
+}
+
+/// Writes the files that differ from those on the disk. Creates the folder of the pictures if it is missing.
+///
+/// # Errors
+/// The path of the file at fault and the error of the system.
+pub fn write(files: &[ReportFile]) -> Result<()> {
+    for ReportFile { path, text } in files {
+        if fs::read(path).is_ok_and(|found| found == text.as_bytes()) {
+            continue;
+        }
+        if let Some(folder) = path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty())
+        {
+            fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+        }
+        output::write(path, text.as_bytes()).with_context(|| path.display().to_string())?;
+    }
+    Ok(())
+}
+
+/// Returns the differences of the files from those on the disk, as messages: the section and the first line of the
+/// Markdown file, and each picture.
+pub fn differences(files: &[ReportFile]) -> Vec<String> {
+    let mut differences = Vec::new();
+    for ReportFile { path, text } in files {
+        let name = path.display();
+        match fs::read_to_string(path) {
+            Ok(found) if found == *text => {}
+            Ok(found) if path.extension().is_some_and(|extension| extension == "svg") => {
+                let count = changed(&found, text).len();
+                differences.push(format!("{name}: {count} lines of the picture differ"));
+            }
+            Ok(found) => {
+                let lines = changed(&found, text).into_iter();
+                differences.extend(lines.map(|line| format!("{name}: {line}")));
+            }
+            Err(error) => differences.push(format!("{name}: {error}")),
+        }
+    }
+    differences
+}
+
+/// Returns a message for each line of `text` that differs from `found`. Lines are compared within their sections.
+fn changed(found: &str, text: &str) -> Vec<String> {
+    let [found, text] = [found, text].map(sections_of);
+    let mut messages = Vec::new();
+    for (heading, lines) in &text {
+        let Some((_, old)) = found.iter().find(|(name, _)| name == heading) else {
+            messages.push(format!("the section \"{heading}\" is missing"));
+            continue;
+        };
+        for index in 0..lines.len().max(old.len()) {
+            let [line, old] = [lines, old].map(|lines| lines.get(index).copied().unwrap_or(""));
+            if line != old {
+                messages.push(format!(
+                    "{heading}: expected \"{old}\", measured \"{line}\""
+                ));
+            }
+        }
+    }
+    let surplus = found
+        .iter()
+        .filter(|(name, _)| text.iter().all(|(heading, _)| heading != name));
+    messages.extend(surplus.map(|(name, _)| format!("the section \"{name}\" belongs to no check")));
+    messages
+}
+
+/// Splits a text at its headings of second order. The first section has an empty heading.
+fn sections_of(text: &str) -> Vec<(&str, Vec<&str>)> {
+    let mut sections = vec![("", Vec::new())];
+    for line in text.lines() {
+        match line.strip_prefix("## ") {
+            Some(heading) => sections.push((heading, Vec::new())),
+            None => sections
+                .last_mut()
+                .expect("there is a first section")
+                .1
+                .push(line),
+        }
+    }
+    sections
+}
+
+fn markdown(folder: &str, sections: &[Section]) -> String {
+    let mut text = String::from(
+        "# Validation\n\n\
+         What `fuwafuwa check` measures, beside theory, published values, or a second way to compute. A program wrote this\n\
+         page: `cargo run --package fuwafuwa_cli -- check all --report docs/validation.md`. `cargo xtask test` compares it\n\
+         with new measurements.\n\n\
+         Pictures show measured points upon the curve of the reference. Where there is no curve, they show the deviation\n\
+         from the reference in units of its bound: all points must lie in the green band.\n\n\
+         | check | values | passed | for comparison |\n| --- | --- | --- | --- |\n",
+    );
+    for Section { name, findings, .. } in sections {
+        let count = |pass| {
+            findings
+                .outcomes
+                .iter()
+                .filter(|outcome| outcome.pass == pass)
+                .count()
+        };
+        let (passed, failed, shown) = (count(Some(true)), count(Some(false)), count(None));
+        text += &format!(
+            "| [{name}](#{name}) | {} | {passed} of {} | {shown} |\n",
+            findings.outcomes.len(),
+            passed + failed
+        );
+    }
+    for section in sections {
+        let Section {
+            name,
+            about,
+            findings,
+        } = section;
+        text += &format!("\n## {name}\n\n{about}\n\n![{name}]({folder}/{name}.svg)\n\n",);
+        text += "| # | case | measured | reference | bound | passed |\n| --- | --- | --- | --- | --- | --- |\n";
+        for (index, outcome) in findings.outcomes.iter().enumerate() {
+            text += &row(index + 1, outcome);
+        }
+    }
+    text
+}
+
+/// Returns the row of an outcome in the table of its check.
+fn row(number: usize, outcome: &Outcome) -> String {
+    let reference = outcome.reference.map_or("–".into(), digits);
+    let passed = match outcome.pass {
+        Some(true) => "yes",
+        Some(false) => "**no**",
+        None => "*for comparison*",
+    };
+    format!(
+        "| {number} | {} | {} | {reference} | {} | {passed} |\n",
+        outcome.case.replace('|', "\\|"),
+        measured(outcome),
+        bound(outcome)
+    )
+}
+
+/// Formats a measured value.
+fn measured(outcome: &Outcome) -> String {
+    let unit = match (outcome.low, outcome.high) {
+        (Some(low), Some(high)) if low < 0.0 => 0.5 * (high - low),
+        (None, Some(high)) => high,
+        _ => 0.0,
+    };
+    let least = NOTHING * unit;
+    match outcome.value.abs() < least {
+        true => format!("< {}", digits(least)),
+        false => digits(outcome.value),
+    }
+}
+
+/// Formats the bound of an outcome.
+fn bound(outcome: &Outcome) -> String {
+    match (outcome.reference, outcome.low, outcome.high) {
+        (Some(reference), Some(low), Some(high)) => {
+            let half = 0.5 * (high - low);
+            let share = digits(100.0 * half / reference.abs());
+            match reference == 0.0 || half == 0.0 {
+                true => format!("± {}", digits(half)),
+                false => format!("± {share} %"),
+            }
+        }
+        (_, Some(low), Some(high)) => format!("{} to {}", digits(low), digits(high)),
+        (_, None, Some(high)) => format!("≤ {}", digits(high)),
+        (_, Some(low), None) => format!("≥ {}", digits(low)),
+        (_, None, None) => "–".into(),
+    }
+}
+
+fn picture(findings: &Findings) -> String {
+    match findings.plots.is_empty() {
+        true => svg_of_deviations(&findings.outcomes),
+        false => svg_of_plots(&findings.plots),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn section(value: f64) -> Section {
+        let outcome = Outcome::near("twice two".into(), value, 4.0, 0.08);
+        Section {
+            name: "product".into(),
+            about: "Products must be right.".into(),
+            findings: vec![outcome].into(),
+        }
+    }
+
+    #[test]
+    fn changed_row_is_named_with_its_section() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("report.md");
+        let written = files(&path, &[section(4.01)]);
+        write(&written).unwrap();
+        assert_eq!(differences(&written), Vec::<String>::new());
+        let found = differences(&files(&path, &[section(4.02)]));
+        assert!(
+            found[0].contains("product: expected \"| 1 | twice two | 4.01 | 4 | ± 2 % | yes |\""),
+            "{found:?}"
+        );
+        assert!(
+            found[0].contains("measured \"| 1 | twice two | 4.02 |"),
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn unchanged_files_are_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("report.md");
+        let written = files(&path, &[section(4.01)]);
+        write(&written).unwrap();
+        let time = |file: &ReportFile| fs::metadata(&file.path).unwrap().modified().unwrap();
+        let before: Vec<_> = written.iter().map(time).collect();
+        write(&written).unwrap();
+        assert_eq!(written.iter().map(time).collect::<Vec<_>>(), before);
+    }
+
+    #[test]
+    fn numbers_have_four_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (1.0, "1"),
+            (0.123456, "0.1235"),
+            (123456.0, "1.235e5"),
+            (7.8e-7, "7.8e-7"),
+            (-66.104, "-66.1"),
+        ] {
+            assert_eq!(digits(value), text);
+        }
+    }
+}
