@@ -317,7 +317,9 @@ impl Axis {
     /// Returns an axis that contains some values, with some room at both ends. A linear axis begins at 0 if the
     /// smallest value is positive and close to 0.
     fn around(values: impl Iterator<Item = f64> + Clone, is_log: bool) -> Self {
-        let scaled = values.map(|value| if is_log { value.log10() } else { value });
+        // A logarithmic axis shows positive values only.
+        let shown = values.filter(move |&value| !is_log || value > 0.0);
+        let scaled = shown.map(|value| if is_log { value.log10() } else { value });
         let low = scaled.clone().fold(f64::INFINITY, f64::min);
         let high = scaled.fold(f64::NEG_INFINITY, f64::max);
         let room = match high > low {

@@ -1,7 +1,7 @@
 //! Report of checks: a Markdown file, and a picture of each check in a folder beside it.
 //!
-//! The report has the same bytes at every run, on every machine and on any number of threads: it contains no time,
-//! and numbers with few digits.
+//! The report has the same bytes at every run and on any number of threads: it contains no time, and numbers with few
+//! digits. Standard libraries with another sine or exponential function may change the last digit of a reference.
 
 use crate::plot::{svg_of_deviations, svg_of_plots};
 use crate::report::{Findings, Outcome, digits};
@@ -9,8 +9,7 @@ use anyhow::{Context, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Share of its bound below which a deviation from 0 is not told exactly: it consists of rounding errors, which
-/// differ between standard libraries.
+/// Share of a bound below which deviations from 0 are reported as an upper limit: they are rounding errors.
 const NOTHING: f64 = 1e-3;
 
 /// Findings of a check with its description.
@@ -68,7 +67,7 @@ pub fn write(files: &[ReportFile]) -> Result<()> {
     Ok(())
 }
 
-/// Returns the differences of the files from those on the disk, as messages: the section and the first line of the
+/// Returns the differences of the files from those on the disk, as messages: the section of each changed line of the
 /// Markdown file, and each picture.
 pub fn differences(files: &[ReportFile]) -> Vec<String> {
     let mut differences = Vec::new();

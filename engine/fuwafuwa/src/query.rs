@@ -80,9 +80,10 @@ pub struct HitElement {
     pub material: u8,
 }
 
-/// Queries on the present state. Rays and closest points see the smooth surface of soft bodies, see
-/// [`SoftBody::skin_facets`](crate::SoftBody::skin_facets); a point is inside a soft body if it is inside a voxel. The world keeps search trees between queries. The first query after a change
-/// updates the trees, at a cost proportional to the number of exposed faces of the moved bodies. Further
+/// Queries on the present state. Rays, closest points and overlap tests see the smooth surface of soft bodies, see
+/// [`SoftBody::skin_facets`](crate::SoftBody::skin_facets); a point is inside a soft body if it is inside a voxel.
+///
+/// The world keeps search trees between queries. The first query after a change updates the trees, at a cost proportional to the number of exposed faces of the moved bodies. Further
 /// queries reuse the trees and may run on several threads. Of equally distant objects, a query returns the
 /// first one in the order of [`ObjectRef`].
 impl<D: Dim> World<D> {

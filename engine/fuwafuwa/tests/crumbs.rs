@@ -186,7 +186,7 @@ fn check_grinding<D: Dim>(n: usize, least: usize) {
     world
         .add_rigid_body(RigidBody::coupled(Shape::ball(0.2)).at(vector(-0.55, 0.5, depth)))
         .unwrap();
-    check(world, 240, 30, least, |seconds| {
+    check(world, 240, 45, least, |seconds| {
         let in_and_out = seconds.min(0.8) - (seconds - 2.2).max(0.0);
         let turn = 2.0 * (seconds - 0.8).clamp(0.0, 1.4);
         // The hand moves down by 0.15 m and back up, twice a second.

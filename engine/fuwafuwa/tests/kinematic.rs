@@ -25,12 +25,6 @@ fn check_rest<D: Dim>() {
         slept |= is_asleep(&world);
         ended |= slept && has_ended(&world);
     }
-    eprintln!(
-        "D{} asleep {} slept {slept} ended {ended} {:?}",
-        D::N,
-        is_asleep(&world),
-        world[ball].piece_views()[0]
-    );
     assert!(is_asleep(&world) && !ended);
     assert_eq!(world.contacts_of(ball).unwrap().count(), 1);
     for tick in 1..60 {

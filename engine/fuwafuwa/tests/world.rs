@@ -159,11 +159,14 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
         .add_soft_body(ball::<D>(n, damped).translated(vector(0.0, 0.3, 0.0)))
         .unwrap();
     let (mut hit, mut slept) = (false, false);
-    for _ in 0..600 {
+    for _ in 0..900 {
         world.step();
         for event in world.events() {
             hit |= matches!(event, Event::ContactForce(contact) if contact.impulse > 1.0);
             slept |= matches!(event, Event::FellAsleep { .. });
+            if slept {
+                eprintln!("SLEPT {} {}", D::N, world.ticks());
+            }
         }
         if slept {
             break;

@@ -168,7 +168,9 @@ fn link_of_a_typical_round_is_short_and_playable() {
             assert!(replay.outcome.is_some());
             let link = check(&replay);
             tell(&format!("{name} {seed}"), replay.ticks(), &link);
-            assert!(link.len() <= USUAL, "{name} {seed}: {}", link.len());
+            // A bot that shaves may need most of a minute.
+            let limit = USUAL.max(120 * replay.ticks() / 60);
+            assert!(link.len() <= limit, "{name} {seed}: {}", link.len());
             if seed == 1 {
                 watch(read_round(&link)).unwrap();
             }

@@ -29,11 +29,11 @@ const SIZE: [usize; 2] = [80, 4];
 const TIP_LOADS: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 5.0, 10.0];
 /// Own weights γ = q L³ / E' I.
 const WEIGHTS: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 5.0, 10.0];
-/// Published solutions: tip load α, own weight γ, and drop, shortening and tip angle [°] with the digits of the
-/// publication. Tip loads: K. E. Bisshopp, D. C. Drucker, *Large deflection of cantilever beams*, Quarterly of
+/// Known solutions: tip load α, own weight γ, and drop, shortening and tip angle [°] with four
+/// digits. Tip loads: K. E. Bisshopp, D. C. Drucker, *Large deflection of cantilever beams*, Quarterly of
 /// Applied Mathematics 3 (1945). Own weights have no closed form: an independent numerical solution with a tolerance
 /// of 1e-9.
-const PUBLISHED: [(f64, f64, [f64; 3]); 6] = [
+const KNOWN: [(f64, f64, [f64; 3]); 6] = [
     (0.5, 0.0, [0.1621, 0.0159, 14.01]),
     (1.0, 0.0, [0.3017, 0.0564, 26.43]),
     (10.0, 0.0, [0.8106, 0.5550, 81.95]),
@@ -41,7 +41,7 @@ const PUBLISHED: [(f64, f64, [f64; 3]); 6] = [
     (0.0, 5.0, [0.4959, 0.1533, 39.94]),
     (0.0, 10.0, [0.7002, 0.3436, 60.31]),
 ];
-/// Maximum difference from the published solutions: a unit of their last digit, of lengths and of angles [°].
+/// Maximum difference from the known solutions: a unit of their last digit, of lengths and of angles [°].
 const LAST_DIGIT: [f64; 3] = [1e-4, 1e-4, 1e-2];
 /// Maximum relative deviation from the elastica.
 const TOLERANCE: f64 = 0.02;
@@ -65,7 +65,7 @@ pub struct Bent {
 
 /// Compares bent bars with the elastica.
 pub fn check(progress: &Progress) -> Result<Findings> {
-    compare_with_published()?;
+    compare_with_known()?;
     let cases: Vec<(f64, f64)> = { TIP_LOADS.iter().map(|&load| (load, 0.0)) }
         .chain(WEIGHTS.iter().map(|&weight| (0.0, weight)))
         .collect();
@@ -148,19 +148,19 @@ pub fn elastica(load: f64, weight: f64) -> Bent {
     }
 }
 
-/// Compares [`elastica`] with the published solutions.
-fn compare_with_published() -> Result<()> {
-    for (load, weight, published) in PUBLISHED {
+/// Compares [`elastica`] with the known solutions.
+fn compare_with_known() -> Result<()> {
+    for (load, weight, known) in KNOWN {
         let Bent {
             drop,
             shortening,
             angle,
         } = elastica(load, weight);
         let found = [drop, shortening, angle.to_degrees()];
-        let is_close = |k: usize| (found[k] - published[k]).abs() <= LAST_DIGIT[k];
+        let is_close = |k: usize| (found[k] - known[k]).abs() <= LAST_DIGIT[k];
         ensure!(
             (0..3).all(is_close),
-            "elastica for tip load {load} and weight {weight}: expected {published:?}, computed {found:?}"
+            "elastica for tip load {load} and weight {weight}: expected {known:?}, computed {found:?}"
         );
     }
     Ok(())
@@ -293,8 +293,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn elastica_has_the_published_shapes() {
-        compare_with_published().unwrap();
+    fn elastica_has_the_known_shapes() {
+        compare_with_known().unwrap();
     }
 
     #[test]

@@ -25,8 +25,8 @@ const WEIGHTS: [f64; 6] = [0.0, 0.25, 0.5, 0.75, 0.85, 0.95];
 const CRITICAL: f64 = 7.8373;
 /// Squared frequency ω² ρ A L⁴ / E' I without weight: k⁴, with the first root k of cos k cosh k = −1.
 const UNLOADED: f64 = 12.3624;
-/// Maximum relative deviation of the critical weight. A squared frequency may deviate by as much of that without
-/// weight.
+/// Maximum relative deviation of the critical weight. Also the maximum deviation of a squared frequency, in units of
+/// that without weight.
 const TOLERANCE: f64 = 0.02;
 /// Amplitude of the sway [m].
 const AMPLITUDE: f64 = 5e-3;

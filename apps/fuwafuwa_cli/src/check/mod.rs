@@ -35,7 +35,7 @@ mod turek_hron;
 
 use crate::report::{self, Findings, Outcome, Progress};
 use crate::validation::{self, Section};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::ValueEnum;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -52,8 +52,8 @@ pub struct Arguments {
     /// Print JSON instead of a table.
     #[arg(long)]
     json: bool,
-    /// Write a report in Markdown, with a picture of each check in a folder beside it. Files that would not change
-    /// are left alone.
+    /// Write a report of all checks in Markdown, with a picture of each check in a folder beside it. Files that would
+    /// not change are left alone.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
     /// Compare the report with its files instead of writing it. The exit code is 1 if they differ.
@@ -96,8 +96,8 @@ enum Which {
     /// Bodies that sag, float or slide slowly must not be stopped. Reference: the static solution of the same mesh, the
     /// speed at the start, and Coulomb's law without friction.
     Slow,
-    /// A ball must resist a plate as a smooth elastic ball does. Reference: Sneddon's exact linear sphere (1965); deeper
-    /// than 4 % of the width, axisymmetric finite elements of the same law. Two balls are shown for comparison.
+    /// A ball must resist a plate as a smooth elastic ball does. Reference: axisymmetric finite elements of the same law.
+    /// Two balls, and balls with smoothed voxels, are shown for comparison.
     Sphere,
     /// Blocks on inclined planes must slide as Coulomb's law says, or rest. Reference: v = g (tan φ − µ) cos φ · t in
     /// closed form.
@@ -180,6 +180,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         .filter(|(which, _)| is_chosen(*which))
         .collect();
     if let Some(path) = &arguments.report {
+        ensure!(
+            arguments.which == Which::All,
+            "--report needs `check all`: the report has a section for each check"
+        );
         output::check_folder(path).with_context(|| path.display().to_string())?;
     }
     let progress = Progress::new();
@@ -269,6 +273,9 @@ fn run_all(
             waiting.insert(index, found);
             while let Some(found) = waiting.remove(&count) {
                 result = result.and_then(|()| done(checks[count].0, found?));
+                if result.is_err() {
+                    next.store(checks.len(), Ordering::Relaxed);
+                }
                 count += 1;
             }
         }

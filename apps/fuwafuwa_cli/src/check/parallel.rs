@@ -5,7 +5,7 @@ use anyhow::{Result, anyhow};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
 
-/// Number of cases that run at the present, over all checks, and a signal when one ends.
+/// Number of running cases of all checks, and the signal that one has ended.
 static RUNNING: (Mutex<usize>, Condvar) = (Mutex::new(0), Condvar::new());
 
 /// Permission to run a case. At most as many exist as the machine has threads, so that checks which run side by side

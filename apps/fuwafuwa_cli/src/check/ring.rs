@@ -40,14 +40,14 @@ const FORCES: [f64; 5] = [0.5, 1.0, 2.0, 3.0, 5.0];
 /// Diameter loss and side growth, relative to the diameter, with the digits of an independent solution of the same
 /// equation with a tolerance of 1e-9. For small forces they are p (π/8 − 1/π) and p (1/π − 1/4); S. Timoshenko,
 /// *Strength of Materials*.
-const PUBLISHED: [(f64, [f64; 2]); 5] = [
+const KNOWN: [(f64, [f64; 2]); 5] = [
     (0.5, [0.0394, 0.0348]),
     (1.0, [0.0835, 0.0706]),
     (2.0, [0.1868, 0.1433]),
     (3.0, [0.3101, 0.2122]),
     (5.0, [0.5959, 0.3116]),
 ];
-/// Maximum difference from the published numbers: a unit of their last digit.
+/// Maximum difference from the known numbers: a unit of their last digit.
 const LAST_DIGIT: f64 = 1e-4;
 /// Maximum relative deviation from the elastica.
 const TOLERANCE: f64 = 0.02;
@@ -74,7 +74,7 @@ struct Pinched {
 
 /// Compares pinched rings with the elastica.
 pub fn check(progress: &Progress) -> Result<Findings> {
-    compare_with_published()?;
+    compare_with_known()?;
     let [thin, thick] = small_losses(SIZE[0] as f64 / SIZE[1] as f64);
     let losses = parallel::each(&[SIZE, FINE], progress, |&size| small_loss(size, progress))?;
     let mut findings = Findings::default();
@@ -151,9 +151,9 @@ fn elastica(force: f64) -> Pinched {
     }
 }
 
-/// Compares [`elastica`] with the published solutions.
-fn compare_with_published() -> Result<()> {
-    for (force, [loss, growth]) in PUBLISHED {
+/// Compares [`elastica`] with the known solutions.
+fn compare_with_known() -> Result<()> {
+    for (force, [loss, growth]) in KNOWN {
         let found = elastica(force);
         ensure!(
             (found.loss - loss).abs() <= LAST_DIGIT && (found.growth - growth).abs() <= LAST_DIGIT,
@@ -273,8 +273,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn elastica_has_the_published_shapes() {
-        compare_with_published().unwrap();
+    fn elastica_has_the_known_shapes() {
+        compare_with_known().unwrap();
         let small = elastica(1e-3);
         assert!(
             (small.loss / 1e-3 - (PI / 8.0 - 1.0 / PI)).abs() < 1e-3,

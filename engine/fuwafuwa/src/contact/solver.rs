@@ -49,7 +49,9 @@ const SCALED_SWEEPS: usize = 4;
 /// balls 2 mm wide blew up in impacts at 250 m/s.
 const FAST_SCALED_SWEEPS: usize = 16;
 /// Distance by which a node may be outside the smooth surface in contact, as a multiple of that at rest. Beyond it,
-/// the node itself is the contact point. In impacts at 10 m/s and more, nodes would otherwise pass a plate.
+/// the node itself is the contact point. In impacts at 10 m/s and more, nodes would otherwise pass a plate. The
+/// distance is also limited to half the radius of the largest ball in the rigid shape: on shapes thinner than about
+/// two voxels, contacts are at the nodes.
 const NODE_OUTSIDE: f32 = 1.25;
 /// Gap between a node and a rigid body below which one can wake the other [voxels].
 const WAKING_NODE: f32 = 2.0 * CLOSE;
@@ -154,15 +156,17 @@ impl Contacts {
                 // Skips nodes that are too slow to reach a resting rigid shape in this substep, in any
                 // direction: most nodes.
                 let reachable = (pair.clear - stretch * travel).max(0.0) / (AHEAD * duration);
-                if !moves && inner::<D>(velocity, velocity) < reachable * reachable {
+                let of_node = body.velocities()[node];
+                let fastest = inner::<D>(velocity, velocity).max(inner::<D>(of_node, of_node));
+                if !moves && fastest < reachable * reachable {
                     continue;
                 }
                 let size = body.grid().voxel_size();
                 let (mut gap, mut normal) = rigid.shape().distance(at.xyz());
                 if !is_at_node {
                     // The contact at the skin point holds only the mean of the node and its neighbours.
-                    let outside =
-                        (NODE_OUTSIDE * skin.reach() * size).min(0.5 * rigid.shape().inradius());
+                    let outside = (NODE_OUTSIDE * skin.reach() * size)
+                        .min(0.5 * rigid.shape().inner_radius());
                     let (own_gap, own_normal) =
                         rigid.shape().distance(body.positions()[node].xyz());
                     if own_gap + outside < gap {
@@ -211,7 +215,8 @@ impl Contacts {
                 let inverse_mass = own_inverse_mass + rigid.max_inverse_effective_mass(at.xyz());
                 // A sleeping node acts as a fixed obstacle for a dynamic rigid body. Skips the node's contacts
                 // with all other rigid bodies.
-                if body.inverse_masses()[node] == 0.0 && !rigid.is_dynamic() {
+                let is_held = body.inverse_masses()[node] == 0.0 && !rigid.is_dynamic();
+                if is_held || inverse_mass == 0.0 {
                     continue;
                 }
                 let friction = rigid.friction;

@@ -252,6 +252,12 @@ pub fn corner(index: usize) -> Point {
 /// For each axis, mask of the corners with coordinate 1 on that axis, see [`corner`].
 pub const FAR: [u8; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
 
+/// Returns the voxel, or the low corner of the block, on the other side of face 2 · axis + side (0 = low, 1 = high).
+pub fn beyond(mut block: Point, face: usize) -> Point {
+    block[face / 2] += 2 * (face % 2) as i32 - 1;
+    block
+}
+
 /// Coordinate-wise sum.
 #[inline]
 pub fn add(a: Point, b: Point) -> Point {

@@ -111,7 +111,7 @@ impl RigidState {
     /// Returns the size of the body for [`RestSpeeds`](crate::contact::rest_speeds::RestSpeeds) [m]: a quarter of
     /// the inradius, which is the width of a voxel of a body with eight voxels across.
     pub(crate) fn rest_size(&self) -> f32 {
-        0.25 * self.local_shape.inradius().min(1.0)
+        0.25 * self.local_shape.inner_radius().min(1.0)
     }
 
     /// Sets the target rotation.

@@ -99,7 +99,7 @@ impl<D: Dim> Shape<D> {
 
     /// Returns the radius of the largest ball that fits into the shape [m].
     pub fn inradius(&self) -> f32 {
-        self.solid().inradius()
+        self.solid().inner_radius()
     }
 
     /// Returns the shape translated by the vector `by` [m].

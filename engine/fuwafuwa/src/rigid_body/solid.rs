@@ -187,17 +187,6 @@ impl Solid {
         }
     }
 
-    /// Returns the radius of the largest ball that fits into the shape [m].
-    pub fn inradius(&self) -> f32 {
-        match *self {
-            Self::HalfSpace { .. } => f32::INFINITY,
-            Self::Box { half, .. } | Self::OrientedBox { half, .. } => {
-                half.to_array().into_iter().fold(f32::INFINITY, f32::min)
-            }
-            Self::Capsule { radius, .. } | Self::Ball { radius, .. } => radius,
-        }
-    }
-
     /// Returns the shape translated by the vector `by` [m].
     pub fn translated(self, by: Vec3) -> Self {
         match self {

@@ -1,6 +1,8 @@
 //! Views of a body: pieces, surface, elements, and the mass in a region.
 
-use crate::foundation::dim::{Dim, Dim2, DimVector, Point, add, corner, face_corners, scale};
+use crate::foundation::dim::{
+    Dim, Dim2, DimVector, Point, add, beyond, corner, face_corners, scale,
+};
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::math::row::Row;
 use crate::rigid_body::shape::Shape;
@@ -41,7 +43,7 @@ pub struct Facet {
     /// the body lies to the left of the segment from the first node to the second. Unused entries are
     /// `u32::MAX`.
     pub nodes: [NodeId; 4],
-    /// Positions of `nodes` [m]; 0 for unused entries.
+    /// Corners [m]: the positions of `nodes`, or the points of the smooth surface at them; 0 for unused entries.
     pub corners: [Vec3; 4],
     /// Outward unit normal.
     pub normal: Vec3,
@@ -160,12 +162,6 @@ pub fn outline_slots(level: u8, children: u8) -> Vec<usize> {
     ring
 }
 
-/// Returns the low corner of the square or cube on the other side of a face.
-fn beyond(mut block: Point, face: usize) -> Point {
-    block[face / 2] += 2 * (face % 2) as i32 - 1;
-    block
-}
-
 impl<D: Dim> SoftBody<D> {
     /// Returns a summary of each piece, by piece number.
     #[inline(never)]
@@ -256,7 +252,7 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Returns the parts of the smooth surface over all exposed faces, in the order of [`SoftBody::facets`]: their
-    /// `corners` are the points of the smooth surface at `nodes`, see [`SoftBody::skin_position`]. Contacts and
+    /// `corners` are the points of the smooth surface at `nodes`, see [`SoftBody::skin_position`]. Rigid shapes and
     /// queries use this surface.
     pub fn skin_facets(&self) -> impl Iterator<Item = Facet> + '_ {
         self.facets().map(|facet| {

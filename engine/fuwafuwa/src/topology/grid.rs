@@ -113,7 +113,7 @@ impl<D: Dim> VoxelGrid<D> {
     /// The distance [m] is positive outside, and its argument is a position [m] measured from the low corner of
     /// the grid; the third coordinate is 0 in 2D.
     ///
-    /// The grid keeps the surface, at distance 0, to 1/64 voxel. Contacts and queries then see this surface and
+    /// The grid keeps the surface, at distance 0, to 1/64 voxel. Rigid shapes and queries then see this surface and
     /// not a smoothed staircase of voxels, which may be wrong by half a voxel. A surface more than a voxel
     /// from a corner of a voxel (a thin wall) is not reached. [`VoxelGrid::with_materials`] sets other materials.
     ///
@@ -189,12 +189,18 @@ impl<D: Dim> VoxelGrid<D> {
     /// Returns the grid with the offsets of [`VoxelGrid::surface_offsets`].
     ///
     /// # Errors
-    /// [`Error::InvalidParameter`] if the number of offsets is not that of the surface points.
+    /// [`Error::InvalidParameter`] if the number of offsets is not that of the surface points, or if one is longer than a
+    /// voxel, which is 64.
     pub fn with_surface_offsets(mut self, offsets: Vec<i8>) -> Result<Self, Error> {
         let count = skin::surface_count(&self);
         if offsets.len() != count {
             let expected = format!("{count} offsets, one for each surface point");
             return Err(Error::parameter("surface", expected, offsets.len()));
+        }
+        if !skin::are_offsets(&offsets) {
+            let found = offsets.iter().map(|steps| steps.unsigned_abs()).max();
+            let expected = "offsets from -64 to 64, which is one voxel";
+            return Err(Error::parameter("surface", expected, found.unwrap_or(0)));
         }
         self.surface = offsets;
         Ok(self)
@@ -298,7 +304,8 @@ impl<D: Dim> VoxelGrid<D> {
         let gone = &self.removed;
         let is_known = gone.is_empty() || gone.len() == self.materials.len();
         let has_points = |grid: &Self| {
-            grid.surface.is_empty() || grid.surface.len() == skin::surface_count(grid)
+            let is_complete = || grid.surface.len() == skin::surface_count(grid);
+            grid.surface.is_empty() || skin::are_offsets(&grid.surface) && is_complete()
         };
         is_box && is_known && has_points(self) && gone.iter().zip(&self.materials).all(are_solid)
     }

@@ -1,6 +1,7 @@
-//! Smooth surface of a voxel grid: the shape for which the staircase of voxels stands.
+//! Smooth surface of a voxel grid: the smooth shape that the voxels approximate.
 //!
-//! Voxels decide where material is; contacts, queries and pictures see the skin. Each lattice point of the
+//! Voxels decide where material is. Rigid shapes, queries and the renderer see the skin; two soft bodies touch at
+//! their contact spheres. Each lattice point of the
 //! original surface has an offset to the skin. Offsets are exact if the grid knows its surface (see
 //! [`VoxelGrid::from_distance`]); otherwise they smooth the staircase by at most half a voxel on each axis.
 //!
@@ -10,7 +11,9 @@
 //!   ▗████████████████▖     voxels
 //! ```
 
-use crate::foundation::dim::{Dim, Point, add, corner, face_corners, points_in, voxel_around};
+use crate::foundation::dim::{
+    Dim, Point, add, beyond, corner, face_corners, points_in, voxel_around,
+};
 use crate::topology::grid::VoxelGrid;
 use glam::Vec3;
 
@@ -22,7 +25,7 @@ const STEPS: f32 = 64.0;
 /// Distance within which voxels decide the direction of an offset [voxels]. With 1, the direction on a ball is
 /// wrong by up to 30°.
 const AROUND: i32 = 2;
-/// Maximum offset by smoothing along each axis [voxels]: the staircase says no more about the surface.
+/// Maximum offset by smoothing along each axis [voxels]: the uncertainty of a surface known only by its voxels.
 const BAND: f32 = 0.5;
 /// Number of faces in a row that make an edge sharp. Balls of up to 64 voxels have no such edge.
 const SHARP: i32 = 3;
@@ -39,13 +42,9 @@ pub struct Skin {
     offsets: Vec<Vec3>,
 }
 
-/// Lattice points of the original surface, in memory order of the lattice.
+/// Lattice points of the original surface, in memory order of the lattice: the first axis fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct SurfacePoints {
-    /// Number of lattice points on each axis.
-    size: Point,
-    /// For each lattice point, one more than its index in `points`; 0 for a point that is not on the surface.
-    indices: Vec<u32>,
     points: Vec<Point>,
 }
 
@@ -75,33 +74,21 @@ impl Skin {
 
 impl SurfacePoints {
     fn of<D: Dim>(grid: &VoxelGrid<D>) -> Self {
-        let mut size = grid.size();
-        size[..D::N].iter_mut().for_each(|extent| *extent += 1);
-        let count: i32 = size.iter().product();
-        let mut surface = Self {
-            size,
-            indices: vec![0; count as usize],
-            points: Vec::new(),
+        let mut high = grid.size();
+        high[D::N..].fill(0);
+        let is_surface = |&at: &Point| {
+            let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
+            let solid = voxels.filter(|&voxel| grid.is_solid(voxel)).count();
+            (1..D::CORNERS).contains(&solid)
         };
-        let high = size.map(|extent| extent - 1);
-        for (at, index) in points_in([0; 3], high).zip(0..) {
-            let solid =
-                (0..D::CORNERS).filter(|&octant| grid.is_solid(voxel_around::<D>(at, octant)));
-            if (1..D::CORNERS).contains(&solid.count()) {
-                surface.points.push(at);
-                surface.indices[index] = surface.points.len() as u32;
-            }
+        Self {
+            points: points_in([0; 3], high).filter(is_surface).collect(),
         }
-        surface
     }
 
     fn index(&self, at: Point) -> Option<usize> {
-        let is_inside = (0..3).all(|axis| (0..self.size[axis]).contains(&at[axis]));
-        let place = || ((at[2] * self.size[1] + at[1]) * self.size[0] + at[0]) as usize;
-        is_inside
-            .then(|| self.indices.get(place()).copied())
-            .flatten()
-            .and_then(|index| (index as usize).checked_sub(1))
+        let key = |&[x, y, z]: &Point| [z, y, x];
+        self.points.binary_search_by_key(&key(&at), key).ok()
     }
 }
 
@@ -120,6 +107,12 @@ pub fn measured<D: Dim>(grid: &VoxelGrid<D>, distance: impl Fn(Vec3) -> f32) -> 
     };
     let points = SurfacePoints::of(grid).points.into_iter();
     points.map(|at| (along(at) * STEPS).round() as i8).collect()
+}
+
+/// Returns whether no offset of a grid is longer than [`MAX_OFFSET`].
+pub fn are_offsets(steps: &[i8]) -> bool {
+    let limit = (MAX_OFFSET * STEPS) as u8;
+    steps.iter().all(|steps| steps.unsigned_abs() <= limit)
 }
 
 /// Returns the number of surface points of a grid.
@@ -219,12 +212,6 @@ fn neighbours<D: Dim>(grid: &VoxelGrid<D>, surface: &SurfacePoints) -> Vec<Vec<u
     neighbours
 }
 
-/// Returns the voxel on the other side of face 2 · axis + side of a voxel.
-fn beyond(mut voxel: Point, face: usize) -> Point {
-    voxel[face / 2] += 2 * (face % 2) as i32 - 1;
-    voxel
-}
-
 /// Returns whether a surface point is on a sharp edge: two faces meet in the edge, and both go on from the
 /// edge for [`SHARP`] voxels, or up to another edge of the same kind (thin limbs and small boxes).
 fn is_sharp<D: Dim>(grid: &VoxelGrid<D>, at: Point) -> bool {
@@ -240,7 +227,7 @@ fn is_sharp<D: Dim>(grid: &VoxelGrid<D>, at: Point) -> bool {
     })
 }
 
-/// Returns the voxels at a lattice point with a bare face `face` that lies at the point on the side `way`.
+/// Returns the voxels around a lattice point that lie on the side `way` and have a bare face `face` at the point.
 fn voxels_at<D: Dim>(
     grid: &VoxelGrid<D>,
     at: Point,
@@ -349,7 +336,6 @@ mod tests {
         assert!(lengths(&grid).iter().all(|(_, by)| *by == Vec3::ZERO));
     }
 
-    /// Returns the largest rise of the skin of a slope with steps of `tread` voxels above its mean line.
     #[test]
     fn staircases_become_slopes() {
         for tread in [1, 2, 3] {

@@ -222,8 +222,8 @@ impl<D: Dim> World<D> {
         (overlap.depth > least * size).then_some(overlap)
     }
 
-    /// Adds the points of the smooth surface at the nodes of a piece that are inside a rigid body. If no such point is inside, but the centre of the
-    /// rigid body is in the piece, adds the way of that centre out of the piece.
+    /// Adds the points of the smooth surface at the nodes of a piece that are inside a rigid body. If there is no such
+    /// point, but the centre of the rigid body is in the piece, adds the way of that centre out of the piece.
     fn overlap_with_rigid(
         &self,
         (body, piece): (SoftBodyHandle, PieceId),
@@ -244,7 +244,7 @@ impl<D: Dim> World<D> {
         };
         let object = ObjectRef::Piece { body, piece };
         if let Some(way) = self.way_out(centre, object) {
-            let depth = way.length() + shape.inradius();
+            let depth = way.length() + shape.inner_radius();
             overlap.add(-way, depth);
         }
     }

@@ -30,7 +30,7 @@ pub struct Stage {
     /// Round whose elements `ages` follows: its level and the last tick seen.
     followed: Option<(Arc<Level>, u64)>,
     maps: Maps,
-    /// Outlines of a ghost in 2D, and the smoothing offsets of its bodies.
+    /// Outlines of a ghost in 2D.
     ghost: Outlines,
     time: f64,
 }

@@ -22,8 +22,7 @@ const SLACK: f32 = 0.4;
 /// strongly.
 const RIGID_SLACK: f32 = 1.0;
 
-/// Factor by which the distance between a node and its point of the smooth surface may grow in a stretched
-/// element.
+/// Factor by which the distance between a node and its point of the smooth surface may grow until the next search.
 const STRETCHED: f32 = 1.25;
 
 /// Width of a bin of nodes [voxels]. A rigid shape is first tested against whole bins, and only in nearby
@@ -347,8 +346,13 @@ impl NodePairs {
 /// Returns the distance from a rigid shape within which a node can touch the shape [m]: the node's point of the
 /// smooth surface may be closer than the node.
 fn margin<D: Dim>(body: &SoftBody<D>, node: NodeId) -> f32 {
-    let offset = STRETCHED * body.skin_point(node).reach();
-    (MARGIN + offset) * body.grid().voxel_size()
+    let point = body.skin_point(node);
+    if point.is_node() {
+        return MARGIN * body.grid().voxel_size();
+    }
+    let now = (body.skin_position(node) - body.positions()[node].xyz()).length();
+    let offset = now.max(point.reach() * body.grid().voxel_size());
+    MARGIN * body.grid().voxel_size() + STRETCHED * offset
 }
 
 /// Sort key of a pair: rigid body, soft body and node.

@@ -34,7 +34,7 @@ pub fn bounds_of<D: Dim>(body: &SoftBody<D>, is_one: impl Fn(PieceId) -> bool) -
 pub fn sleeping_in<D: Dim>(places: &[Bounds], rigids: &RigidBodies) -> Vec<RigidSlot> {
     let is_there = |rigid: &RigidState| {
         let [low, high] = rigid.shape().bounds();
-        let margin = MARGIN * rigid.shape().inradius().min(1.0);
+        let margin = MARGIN * rigid.shape().inner_radius().min(1.0);
         places.iter().any(|[from, to]| {
             (0..D::N)
                 .all(|axis| low[axis] - margin <= to[axis] && from[axis] <= high[axis] + margin)
@@ -51,8 +51,10 @@ pub fn supported_by_rigid<D: Dim>(rigid: &RigidState, bodies: &SoftBodies<D>) ->
     for (slot, body) in bodies.by_slot() {
         let reach = MARGIN * body.grid().voxel_size();
         let is_near = |node: NodeId| {
-            let at = body.skin_position(node);
-            body.pieces().sleeps(node) && rigid.shape().distance(at).0 <= reach
+            // On thin shapes and in hard impacts, the node itself is the contact point.
+            let places = [body.skin_position(node), body.positions()[node].xyz()];
+            let is_close = |at: Vec3| rigid.shape().distance(at).0 <= reach;
+            body.pieces().sleeps(node) && places.into_iter().any(is_close)
         };
         let nodes = body.mesh().nodes().map(|(node, _)| node);
         let nodes = nodes.filter(|&node| is_near(node));

@@ -35,7 +35,7 @@ pub fn find_kinematic(rigids: &RigidBodies, duration: f32, found: &mut Vec<Kinem
             }
             let (gap, normal) = hand.shape().gap(rigid.shape());
             // A non-finite gap gives no contact.
-            if gap.is_nan() || gap >= hand.shape().inradius() {
+            if gap.is_nan() || gap >= hand.shape().inner_radius() {
                 continue;
             }
             let friction = match rigid.follows_target() {
@@ -91,7 +91,7 @@ pub fn find_dynamic<D: Dim>(
 /// Returns the distance from a rigid body within which a contact with a body at rest may become active in
 /// this substep [m].
 fn margin(rigid: &RigidState, duration: f32) -> f32 {
-    CLOSE * rigid.shape().inradius().min(1.0) + motion_margin(rigid, duration)
+    CLOSE * rigid.shape().inner_radius().min(1.0) + motion_margin(rigid, duration)
 }
 
 fn motion_margin(rigid: &RigidState, duration: f32) -> f32 {
@@ -111,7 +111,7 @@ fn touch<D: Dim>(
 ) {
     let margin = margin(both[0], duration) + motion_margin(both[1], duration);
     let manifold = both[0].shape().manifold(both[1].shape(), margin);
-    let size = both[0].shape().inradius().min(1.0);
+    let size = both[0].shape().inner_radius().min(1.0);
     let waking = rest.wake_speed(both[0].rest_size());
     let friction = match both[1].motion_type {
         MotionType::Fixed => both[1].friction,
