@@ -164,9 +164,6 @@ fn check_falls_rests_and_sleeps<D: Dim>(n: usize) {
         for event in world.events() {
             hit |= matches!(event, Event::ContactForce(contact) if contact.impulse > 1.0);
             slept |= matches!(event, Event::FellAsleep { .. });
-            if slept {
-                eprintln!("SLEPT {} {}", D::N, world.ticks());
-            }
         }
         if slept {
             break;
