@@ -53,8 +53,8 @@ basket = { centre = [0.9, 0.4, 0.0], half = [0.5, 0.4, 0.6] }
 share = 0.5
 wish = [{ route = "squeeze" }, { pieces = 2 }]
 [[material]]
-strength = 900.0
-toughness = 150.0
+strength = 800.0
+toughness = 133.0
 [[body]]
 shape = "ball"
 n = 8
