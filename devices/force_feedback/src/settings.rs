@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 /// Maximum stiffness of a coupling [full forces per stick travel from the middle to the rim]. With a stiffer
 /// coupling, a stick with a delay could oscillate.
-pub const MAX_STIFFNESS: f32 = 0.35;
+pub const MAX_STIFFNESS: f32 = 0.4;
 
 /// Strength and speed limits of the forces of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -69,9 +69,9 @@ fn rays_hit_the_smooth_surface() {
             .unwrap();
         let (centre, radius) = (Vec3::splat(0.5), 0.5 - 0.5 / n as f32);
         for k in 0..40u8 {
-            let k = f32::from(k);
-            let out =
-                Vec3::new((k * 0.7).sin(), (k * 1.3).cos(), (k * 2.1).sin() + 0.1).normalize();
+            let [x, y, z] =
+                [(7, 13), (5, 11), (3, 17)].map(|(step, count)| f32::from(k * step % count));
+            let out = Vec3::new(x - 6.0, y - 5.2, z - 8.1).normalize();
             let ray = Ray::new(centre + out * 2.0, -out);
             let hit = world.ray_cast(ray, 5.0, QueryFilter::default()).unwrap();
             let error = (hit.point.distance(centre) - radius) * n as f32;

@@ -46,13 +46,13 @@ use std::sync::mpsc;
 /// Check the mechanics against references. The exit code is 1 if a check fails.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Check to run.
+    /// Check to run. All checks take some minutes.
     #[arg(value_enum)]
     which: Which,
     /// Print JSON instead of a table.
     #[arg(long)]
     json: bool,
-    /// Write a report of all checks in Markdown, with a picture of each check in a folder beside it. Files that would
+    /// Write a report in Markdown, which needs `check all`, with a picture of each check in a folder beside it. Files that would
     /// not change are left alone.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,

@@ -2,8 +2,8 @@
 
 use crate::stick::Other;
 use fuwafuwa::{
-    Elasticity, Material, Reaction, RigidBody, RigidBodyHandle, Shape, SoftBody, Vec2, VoxelGrid,
-    World2, WorldConfig,
+    Damping, Elasticity, Material, Reaction, RigidBody, RigidBodyHandle, Shape, SoftBody, Vec2,
+    VoxelGrid, World2, WorldConfig,
 };
 
 /// A soft disc between three walls, open to the left.
@@ -17,7 +17,7 @@ impl Disc {
     pub fn new(young: f64, strength: f32) -> Self {
         let mut world = World2::new(WorldConfig {
             gravity: Vec2::ZERO,
-            drag: 1.0,
+            drag: 5.0,
             ..WorldConfig::default()
         })
         .expect("the configuration is valid");
@@ -29,6 +29,8 @@ impl Disc {
             },
             strength: strength * usual.strength,
             toughness: strength * usual.toughness,
+            // The body itself comes to rest soon; a round body would roll to and fro for long.
+            damping: Damping::at(0.3, 1.0),
             ..usual
         };
         let grid = VoxelGrid::ball(12, 1.0).expect("the grid is valid");

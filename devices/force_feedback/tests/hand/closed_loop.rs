@@ -155,8 +155,8 @@ fn stick_at_a_soft_body_does_not_oscillate() {
                     frame,
                     steers,
                     reach,
-                    // The softest body itself needs ten seconds until it has stopped vibrating.
-                    seconds: 15.0,
+                    // The body itself needs some seconds until it has come to rest.
+                    seconds: 12.0,
                 };
                 let trace = knock(&stick, &mut Disc::new(young, f32::INFINITY), &how);
                 check_calm(&stick, &how, &trace);

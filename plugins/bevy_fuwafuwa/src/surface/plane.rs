@@ -6,8 +6,8 @@
 //!   o───o─o─o      neighbours.
 //! ```
 //!
-//! The outline is smoothed in two steps. First, `Rest` moves the points of the outline by offsets that remove
-//! the stair steps of the voxels in the rest shape. These offsets deform together with the voxels. Then
+//! The outline is smoothed in two steps. First, the points of the outline move onto the smooth surface of the body,
+//! see `SoftBody::skin_offset`. These offsets deform together with the voxels. Then
 //! several rounds smooth the stair steps that contacts press into the deformed outline. The rounds
 //! alternately shrink and expand the outline, so that it keeps its area [Taubin 1995].
 
@@ -20,7 +20,6 @@ use fuwafuwa::inspect::Element;
 use fuwafuwa::inspect::{add, corner, face_corners};
 use fuwafuwa::inspect::{slot_at, slot_index};
 use fuwafuwa::{Bookmark, Changes, Dim, Dim2, ElementId, NodeId, SoftBody};
-use fuwafuwa_render::Rest;
 
 /// Factor of each smoothing round: fraction of the way from a point of the outline to the midpoint of its
 /// neighbours. Negative factors move the point away and expand the outline.
@@ -44,8 +43,6 @@ pub struct PlaneSurface {
     /// Side of the outline that begins at each node; `last` has the side that ends there.
     next: IndexVec<NodeId, OutlineEdge>,
     last: IndexVec<NodeId, OutlineEdge>,
-    /// Smoothing of the stair steps in the rest shape.
-    rest: Rest,
     places: Vec<Vec2>,
     smoothed: Vec<Vec2>,
     followed: Bookmark,
@@ -91,13 +88,8 @@ impl Surface<Dim2> for PlaneSurface {
         let changes = body.changes_since(&mut self.followed);
         let changes = changes.unwrap_or_else(|| {
             // Rebuilds everything in the first call, or if the body had more changes than it stores.
-            let rest = std::mem::take(&mut self.rest);
             *self = Self {
                 followed: self.followed,
-                rest: match rest.matches_grid(body.grid()) {
-                    true => rest,
-                    false => Rest::new(body.grid()),
-                },
                 ..Self::default()
             };
             let mesh = body.mesh();
@@ -233,16 +225,14 @@ impl PlaneSurface {
             let mut beyond = element.cell.at;
             beyond[face / 2] += 2 * (face % 2) as i32 - 1;
             let is_fresh = body.grid().is_solid(beyond);
-            let [start, end] = [from, to].map(|node| body.mesh().node(node).at);
-            let step = [end[0] - start[0], end[1] - start[1]];
-            let offsets = match is_fresh {
-                true => Default::default(),
-                false => self.rest.offsets(body.grid(), element.cell.at, step),
-            };
+            let offsets = [from, to].map(|node| match is_fresh {
+                true => Vec3::ZERO,
+                false => Vec3::from_array(body.skin_offset(body.mesh().node(node).at).to_array()),
+            });
             let side = |to: NodeId, end: usize| OutlineEdge {
                 to: self.of_node[to],
                 is_fresh,
-                offset: offsets[end].to_array().into(),
+                offset: offsets[end].truncate(),
                 corners: std::array::from_fn(|corner| element.nodes[corner]),
             };
             (self.next[from], self.last[to]) = (side(to, 0), side(from, 1));
