@@ -69,8 +69,8 @@ fn rays_hit_the_smooth_surface() {
             .unwrap();
         let (centre, radius) = (Vec3::splat(0.5), 0.5 - 0.5 / n as f32);
         for k in 0..40u8 {
-            let [x, y, z] =
-                [(7, 13), (5, 11), (3, 17)].map(|(step, count)| f32::from(k * step % count));
+            let [x, y, z] = [(7, 13), (5, 11), (3, 17)]
+                .map(|(step, count)| f32::from(u16::from(k) * step % count));
             let out = Vec3::new(x - 6.0, y - 5.2, z - 8.1).normalize();
             let ray = Ray::new(centre + out * 2.0, -out);
             let hit = world.ray_cast(ray, 5.0, QueryFilter::default()).unwrap();
