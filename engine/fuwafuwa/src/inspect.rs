@@ -4,7 +4,7 @@
 //! Simulations do not need this module. Its items follow the implementation and may change with any release.
 
 pub use crate::foundation::dim::{
-    add, corner, face_corners, neighbourhood, points_in, scale, voxel_around,
+    add, beyond, corner, face_corners, neighbourhood, points_in, scale, voxel_around,
 };
 pub use crate::foundation::hash::Hash;
 pub use crate::math::row::Row;

@@ -9,6 +9,7 @@
 //! `w` is the tip deflection under the load `P`. The load is small, so the law is linearised at rest; see
 //! [`Statics`].
 
+use super::bar::plane_strain;
 use super::parallel;
 use super::statics::Statics;
 use crate::plot::{Plot, Points};
@@ -158,7 +159,7 @@ impl Beam {
 /// Returns the effective modulus in bending. A plane-strain beam cannot contract sideways.
 fn bending_modulus(dim: usize, elasticity: Elasticity) -> f64 {
     if dim == 2 {
-        elasticity.young / (1.0 - elasticity.poisson * elasticity.poisson)
+        plane_strain(elasticity)
     } else {
         elasticity.young
     }

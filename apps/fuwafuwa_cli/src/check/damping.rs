@@ -6,6 +6,7 @@
 //!
 //! All bodies move at a constant velocity, which must not be damped. The movement also keeps them awake.
 
+use super::bar::fix_where;
 use super::motion::{arrange, material};
 use super::parallel;
 use crate::plot::{Curve, Plot, Points};
@@ -304,10 +305,7 @@ fn vibration_of_bar(
     };
     arrange(&mut body, |rest| (rest + shape(rest) * AMPLITUDE, velocity))?;
     if let Mode::ClampedBending = mode {
-        let ends: Vec<_> = body.mesh().nodes().collect();
-        for (id, _) in ends.into_iter().filter(|(_, node)| node.at[0] == 0) {
-            body.fix_node(id);
-        }
+        fix_where(&mut body, |at| at[0] == 0);
     }
     let wave_speed = (usual.elasticity.young / f64::from(usual.density)).sqrt();
     let frequency = mode.frequency(wave_speed, f64::from(thickness));

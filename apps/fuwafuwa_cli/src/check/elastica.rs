@@ -11,17 +11,14 @@
 //! bends with E' = E / (1 − ν²). The bar is 20 times as long as thick: shear and stretching then change the
 //! deflection by some 0.3 %.
 
+use super::bar::{Bar, FREQUENCY, place, still};
 use super::parallel;
 use super::shooting::{integrate, root};
 use crate::plot::{Curve, Plot, Points};
 use crate::report::{Findings, Outcome, Progress};
-use anyhow::{Context, Result, ensure};
-use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::{
-    Damping, Dim2, Grip, Material, Shape, SoftBody, StiffBodies, Vec2, VoxelGrid, World,
-    WorldConfig,
-};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use anyhow::{Result, ensure};
+use fuwafuwa::{Damping, Grip, Shape, Vec2, World};
+use std::f64::consts::FRAC_PI_2;
 
 /// Size of the bar [voxels]. It is 1 m long.
 const SIZE: [usize; 2] = [80, 4];
@@ -29,8 +26,7 @@ const SIZE: [usize; 2] = [80, 4];
 const TIP_LOADS: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 5.0, 10.0];
 /// Own weights γ = q L³ / E' I.
 const WEIGHTS: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 5.0, 10.0];
-/// Known solutions: tip load α, own weight γ, and drop, shortening and tip angle [°] with four
-/// digits. Tip loads: K. E. Bisshopp, D. C. Drucker, *Large deflection of cantilever beams*, Quarterly of
+/// Known solutions: tip load α, own weight γ, and drop, shortening and tip angle [°] with four digits. Tip loads: K. E. Bisshopp, D. C. Drucker, *Large deflection of cantilever beams*, Quarterly of
 /// Applied Mathematics 3 (1945). Own weights have no closed form: an independent numerical solution with a tolerance
 /// of 1e-9.
 const KNOWN: [(f64, f64, [f64; 3]); 6] = [
@@ -45,10 +41,6 @@ const KNOWN: [(f64, f64, [f64; 3]); 6] = [
 const LAST_DIGIT: [f64; 3] = [1e-4, 1e-4, 1e-2];
 /// Maximum relative deviation from the elastica.
 const TOLERANCE: f64 = 0.02;
-/// Lowest frequency of the bar [Hz]. It sets Young's modulus.
-pub const FREQUENCY: f64 = 1.0;
-/// Poisson's ratio.
-pub const POISSON: f64 = 0.3;
 /// Time after which the bar is at rest [s]. Its vibrations are damped critically; 2 s give the same results.
 const SETTLING: f64 = 3.0;
 
@@ -189,103 +181,6 @@ fn bend(load: f64, weight: f64) -> Result<Bent> {
         shortening: 1.0 - f64::from(tip.x),
         angle: f64::from(section.x).atan2(f64::from(section.y)),
     })
-}
-
-/// Straight bar in plane strain, 1 m long, along the x axis with its left end at x = 0.
-pub struct Bar {
-    size: [usize; 2],
-    material: Material,
-}
-
-impl Bar {
-    /// Returns a bar with a size [voxels]. Its lowest frequency, while clamped at one end, is [`FREQUENCY`].
-    pub fn new(size: [usize; 2], damping: Damping) -> Self {
-        let usual = Material::default();
-        // ω = k² √(E' I / ρ A), with the root k of cos k cosh k = −1 and L = 1 m.
-        let thickness = size[1] as f64 / size[0] as f64;
-        let wave_speed = TAU * FREQUENCY * 12f64.sqrt() / (1.875_104 * 1.875_104 * thickness);
-        let modulus = f64::from(usual.density) * wave_speed * wave_speed;
-        let material = unbreakable(modulus, damping);
-        Self { size, material }
-    }
-
-    /// Modulus E' = E / (1 − ν²) of bending in plane strain [Pa].
-    pub fn modulus(&self) -> f64 {
-        plane_strain(self.material.elasticity)
-    }
-
-    /// Thickness [m].
-    pub fn thickness(&self) -> f64 {
-        self.size[1] as f64 / self.size[0] as f64
-    }
-
-    /// Returns the bar, clamped at its left end.
-    pub fn body(&self) -> Result<SoftBody<Dim2>> {
-        let [length, thickness] = self.size;
-        let grid = VoxelGrid::from_fn([length, thickness, 1], 1.0 / length as f32, |_| 1)?;
-        let mut body = SoftBody::new(grid, &[self.material])?;
-        fix_where(&mut body, |at| at[0] == 0);
-        Ok(body)
-    }
-
-    /// Returns the gravity [m/s²] at which the weight per length q of the bar is `weight` · E' I / L³.
-    pub fn gravity(&self, weight: f64) -> f64 {
-        let thickness = self.thickness();
-        let stiffness = self.modulus() * thickness * thickness / 12.0;
-        weight * stiffness / f64::from(self.material.density)
-    }
-}
-
-/// Returns a material that does not tear, with the default density, a Poisson's ratio of [`POISSON`], and a modulus of
-/// bending in plane strain [Pa].
-pub fn unbreakable(modulus: f64, damping: Damping) -> Material {
-    Material {
-        elasticity: Elasticity {
-            young: modulus * (1.0 - POISSON * POISSON),
-            poisson: POISSON,
-        },
-        damping,
-        strength: f32::INFINITY,
-        ..Material::default()
-    }
-}
-
-/// Returns the modulus of bending in plane strain, E / (1 − ν²) [Pa].
-pub fn plane_strain(elasticity: Elasticity) -> f64 {
-    elasticity.young / (1.0 - elasticity.poisson * elasticity.poisson)
-}
-
-/// Returns a configuration with a gravity [m/s²], without sleep, in which no body is scaled.
-pub fn still(gravity: Vec2) -> WorldConfig<Dim2> {
-    WorldConfig {
-        gravity,
-        sleep: false,
-        stiff_bodies: StiffBodies::Exact,
-        ..WorldConfig::default()
-    }
-}
-
-/// Fixes the nodes at the lattice points that `is_fixed` returns true for.
-pub fn fix_where(body: &mut SoftBody<Dim2>, is_fixed: impl Fn([i32; 2]) -> bool) {
-    let nodes: Vec<_> = body.mesh().nodes().collect();
-    for (id, _) in nodes
-        .into_iter()
-        .filter(|(_, node)| is_fixed([node.at[0], node.at[1]]))
-    {
-        body.fix_node(id);
-    }
-}
-
-/// Returns the position [m] of the node at a lattice point.
-///
-/// # Errors
-/// If the body has no node there.
-pub fn place(body: &SoftBody<Dim2>, at: [usize; 2]) -> Result<Vec2> {
-    let point = at.map(|coordinate| coordinate as i32);
-    let mut nodes = body.mesh().nodes();
-    let node = nodes.find(|(_, node)| node.at[..2] == point);
-    let (id, _) = node.with_context(|| format!("the body has no node at {at:?}"))?;
-    Ok(body.node_state(id).0)
 }
 
 #[cfg(test)]

@@ -5,8 +5,8 @@
 //! \[Southwell\]. The check measures it below the critical weight and extrapolates to 0. Gravity points along the
 //! bar to its clamped end.
 
+use super::bar::{Bar, FREQUENCY, still};
 use super::damping::{Mode, Vibration, vibration_in};
-use super::elastica::{Bar, FREQUENCY, still};
 use super::motion::arrange;
 use super::parallel;
 use super::shooting::{integrate, root};

@@ -1,5 +1,6 @@
 //! Checks of the mechanics against theory and reference solutions. The exit status is 1 if a check fails.
 
+mod bar;
 mod beam;
 mod bounce;
 mod damping;

@@ -18,7 +18,7 @@
 //! is compared relative to the stiffness of the same ring under a small force. With 16 voxels the large deflections
 //! would take minutes, and thinner rings lose the force in the rounding of single precision.
 
-use super::elastica::{POISSON, fix_where, place, plane_strain, still, unbreakable};
+use super::bar::{POISSON, fix_where, place, plane_strain, still, unbreakable};
 use super::parallel;
 use super::shooting::{integrate, root};
 use super::statics::Statics;

@@ -1,5 +1,6 @@
 //! Slow motion: bodies that sag, float or slide slowly must not be stopped by sleep or by hidden damping.
 
+use super::bar::fix_where;
 use super::parallel;
 use super::slope::{coulomb, slide};
 use super::statics::Statics;
@@ -74,10 +75,8 @@ fn sag(progress: &Progress) -> Result<f64> {
     let [length, thickness] = CANTILEVER;
     let grid = VoxelGrid::from_fn([length, thickness, 1], 1.0 / length as f32, |_| 1)?;
     let mut body = SoftBody::<Dim2>::new(grid, &[material])?;
+    fix_where(&mut body, |at| at[0] == 0);
     let nodes: Vec<_> = body.mesh().nodes().collect();
-    for &(id, _) in nodes.iter().filter(|(_, node)| node.at[0] == 0) {
-        body.fix_node(id);
-    }
     let statics = Statics::new(body.mesh(), material.elasticity, |node, _| node.at[0] == 0);
     let mut load = vec![0.0; body.mesh().node_capacity() * 2];
     for &(id, _) in &nodes {

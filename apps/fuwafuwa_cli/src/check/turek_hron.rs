@@ -16,7 +16,7 @@
 //! CSM3 has no damping. Its mean and amplitude drift, because the phase of the second vibration mode drifts, and the
 //! benchmark takes them from the last period. The check takes them from the last period before [`DURATION`].
 
-use super::elastica::{fix_where, place, still};
+use super::bar::{fix_where, place, still};
 use super::parallel;
 use crate::plot::{Curve, Plot, Points};
 use crate::report::{Findings, Outcome, Progress};

@@ -22,6 +22,7 @@ use crate::foundation::threads;
 use crate::rigid_body::RigidBodies;
 use crate::rigid_body::layers::Layers;
 use crate::soft_body::element_forces::Row;
+use crate::soft_body::skin_point::SkinPoint;
 use crate::soft_body::{SoftBodies, SoftBody};
 use contact_row::{AHEAD, CLOSE, Contact, is_close};
 use contact_sides::{DynamicContact, KinematicContact, NodeContact, SphereContact};
@@ -143,16 +144,9 @@ impl Contacts {
                     pair.impulse.clear();
                     continue;
                 }
-                let skin = body.skin_point(node);
-                let mut is_at_node = skin.is_node();
-                let (mut at, mut velocity, stretch) = match is_at_node {
-                    true => (body.positions()[node], body.velocities()[node], 1.0),
-                    false => (
-                        skin.mean(node, body.positions()),
-                        skin.mean(node, body.velocities()),
-                        skin.stretch(),
-                    ),
-                };
+                let mut point = *body.skin_point(node);
+                let (mut at, mut velocity) = (body.skin_row(node), body.skin_velocity(node));
+                let stretch = point.stretch();
                 // Skips nodes that are too slow to reach a resting rigid shape in this substep, in any
                 // direction: most nodes.
                 let reachable = (pair.clear - stretch * travel).max(0.0) / (AHEAD * duration);
@@ -163,14 +157,14 @@ impl Contacts {
                 }
                 let size = body.grid().voxel_size();
                 let (mut gap, mut normal) = rigid.shape().distance(at.xyz());
-                if !is_at_node {
+                if !point.is_node() {
                     // The contact at the skin point holds only the mean of the node and its neighbours.
-                    let outside = (NODE_OUTSIDE * skin.reach() * size)
+                    let outside = (NODE_OUTSIDE * point.reach() * size)
                         .min(0.5 * rigid.shape().inner_radius());
                     let (own_gap, own_normal) =
                         rigid.shape().distance(body.positions()[node].xyz());
                     if own_gap + outside < gap {
-                        is_at_node = true;
+                        point = SkinPoint::NODE;
                         (gap, normal) = (own_gap + outside, own_normal);
                         (at, velocity) = (body.positions()[node], body.velocities()[node]);
                     }
@@ -208,11 +202,8 @@ impl Contacts {
                         hits.rigids.push(pair.rigid);
                     }
                 }
-                let own_inverse_mass = match is_at_node {
-                    true => body.inverse_masses()[node],
-                    false => skin.inverse_mass(node, body.inverse_masses()),
-                };
-                let inverse_mass = own_inverse_mass + rigid.max_inverse_effective_mass(at.xyz());
+                let inverse_mass = point.inverse_mass(node, body.inverse_masses())
+                    + rigid.max_inverse_effective_mass(at.xyz());
                 // A sleeping node acts as a fixed obstacle for a dynamic rigid body. Skips the node's contacts
                 // with all other rigid bodies.
                 let is_held = body.inverse_masses()[node] == 0.0 && !rigid.is_dynamic();
@@ -227,7 +218,7 @@ impl Contacts {
                     contact.tangent_mass = 1.0 / (inverse_mass + most);
                 }
                 let contact = contact.with_warm_start::<D>(index, &pair.impulse);
-                contacts.push((contact, &*pair, is_at_node));
+                contacts.push((contact, &*pair, point));
             }
             (contacts, hits)
         });
@@ -235,20 +226,15 @@ impl Contacts {
             hits.pieces.extend(hit.pieces);
             hits.rigids.extend(hit.rigids);
             self.nodes
-                .extend(contacts.into_iter().map(|(contact, pair, is_at_node)| {
+                .extend(contacts.into_iter().map(|(contact, pair, point)| {
                     let body = bodies.at(pair.body);
-                    let skin = body.skin_point(pair.node);
                     let mut row = |node| self.velocities.row(pair.body, node);
                     NodeContact {
                         contact,
                         node: row(pair.node),
-                        neighbours: (!is_at_node)
-                            .then(|| (skin.neighbours.map(&mut row), skin.weights)),
+                        point: point.map(row),
                         mover: rigids.at(pair.rigid).moves().then(|| {
-                            let at = match is_at_node {
-                                true => body.positions()[pair.node],
-                                false => body.skin_row(pair.node),
-                            };
+                            let at = point.mean(pair.node, body.positions());
                             let lever = at.xyz() - rigids.at(pair.rigid).position();
                             (pair.rigid, lever)
                         }),

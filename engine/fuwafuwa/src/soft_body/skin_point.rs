@@ -2,7 +2,7 @@
 
 use super::SoftBody;
 use crate::foundation::dim::{Dim, Point, voxel_around};
-use crate::foundation::ids::{IndexVec, NodeId};
+use crate::foundation::ids::{Id, IndexVec, NodeId};
 use crate::soft_body::element_forces::Row;
 use glam::Vec3;
 
@@ -13,57 +13,20 @@ const MIN_OFFSET: f32 = 1e-3;
 /// node and those of its neighbours along the axes of one element, so the point turns and strains with the body.
 /// An impulse on the point acts on these nodes by the same weights, which keeps linear and angular momentum.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct SkinPoint {
+pub struct SkinPoint<I = NodeId> {
     /// Neighbour of the node along each axis.
-    pub neighbours: [NodeId; 3],
+    pub neighbours: [I; 3],
     /// Weight of each neighbour: the offset along its axis [voxels], negative away from the neighbour. The node
     /// has the rest, so that all weights have the sum 1.
     pub weights: [f32; 3],
 }
 
-impl Default for SkinPoint {
-    fn default() -> Self {
-        Self {
-            neighbours: [NodeId(0); 3],
-            weights: [0.0; 3],
-        }
-    }
-}
-
 impl SkinPoint {
-    /// Returns whether the point is the node itself, as in the interior and on flat faces.
-    #[inline(always)]
-    pub fn is_node(&self) -> bool {
-        self.weights == [0.0; 3]
-    }
-
-    /// Weight of the node itself.
-    #[inline(always)]
-    pub fn own_weight(&self) -> f32 {
-        own_weight(self.weights)
-    }
-
-    /// Returns the value at the point of a quantity that `rows` holds for each node.
-    #[inline(always)]
-    pub fn mean(&self, node: NodeId, rows: &IndexVec<NodeId, Row>) -> Row {
-        let mut sum = rows[node] * self.own_weight();
-        for axis in 0..3 {
-            sum += rows[self.neighbours[axis]] * self.weights[axis];
-        }
-        sum
-    }
-
-    /// Returns the inverse effective mass of the point [1/kg].
-    #[inline(always)]
-    pub fn inverse_mass(&self, node: NodeId, inverse_masses: &IndexVec<NodeId, f32>) -> f32 {
-        let own = self.own_weight();
-        let mut sum = inverse_masses[node] * (own * own);
-        for axis in 0..3 {
-            let weight = self.weights[axis];
-            sum += inverse_masses[self.neighbours[axis]] * (weight * weight);
-        }
-        sum
-    }
+    /// The node itself, as in the interior and on flat faces.
+    pub const NODE: Self = Self {
+        neighbours: [NodeId(0); 3],
+        weights: [0.0; 3],
+    };
 
     /// Sum of the absolute weights of the neighbours: an upper bound of the distance between node and point
     /// [voxels].
@@ -77,12 +40,57 @@ impl SkinPoint {
     pub fn stretch(&self) -> f32 {
         self.own_weight().abs() + self.reach()
     }
+
+    /// Returns the inverse effective mass of the point [1/kg].
+    #[inline(always)]
+    pub fn inverse_mass(&self, node: NodeId, inverse_masses: &IndexVec<NodeId, f32>) -> f32 {
+        if self.is_node() {
+            return inverse_masses[node];
+        }
+        let own = self.own_weight();
+        let mut sum = inverse_masses[node] * (own * own);
+        for axis in 0..3 {
+            let weight = self.weights[axis];
+            sum += inverse_masses[self.neighbours[axis]] * (weight * weight);
+        }
+        sum
+    }
 }
 
-/// Returns the weight of a node, given those of its neighbours.
-#[inline(always)]
-pub fn own_weight(weights: [f32; 3]) -> f32 {
-    1.0 - weights[0] - weights[1] - weights[2]
+impl<I: Id> SkinPoint<I> {
+    /// Returns whether the point is the node itself.
+    #[inline(always)]
+    pub fn is_node(&self) -> bool {
+        self.weights == [0.0; 3]
+    }
+
+    /// Weight of the node itself.
+    #[inline(always)]
+    pub fn own_weight(&self) -> f32 {
+        1.0 - self.weights[0] - self.weights[1] - self.weights[2]
+    }
+
+    /// Returns the value at the point of a quantity that `rows` holds for each node.
+    #[inline(always)]
+    pub fn mean(&self, node: I, rows: &IndexVec<I, Row>) -> Row {
+        if self.is_node() {
+            return rows[node];
+        }
+        let mut sum = rows[node] * self.own_weight();
+        for axis in 0..3 {
+            sum += rows[self.neighbours[axis]] * self.weights[axis];
+        }
+        sum
+    }
+
+    /// Returns the same point among other indices.
+    #[inline(always)]
+    pub fn map<J>(self, index: impl FnMut(I) -> J) -> SkinPoint<J> {
+        SkinPoint {
+            neighbours: self.neighbours.map(index),
+            weights: self.weights,
+        }
+    }
 }
 
 impl<D: Dim> SoftBody<D> {
@@ -109,36 +117,26 @@ impl<D: Dim> SoftBody<D> {
 
     #[inline(always)]
     pub(crate) fn skin_row(&self, node: NodeId) -> Row {
-        let point = self.skin_point(node);
-        match point.is_node() {
-            true => self.state.position[node],
-            false => point.mean(node, &self.state.position),
-        }
+        self.skin_point(node).mean(node, &self.state.position)
     }
 
     /// Velocity of the smooth surface at a node [m/s].
     #[inline(always)]
     pub(crate) fn skin_velocity(&self, node: NodeId) -> Row {
-        let point = self.skin_point(node);
-        match point.is_node() {
-            true => self.state.velocity[node],
-            false => point.mean(node, &self.state.velocity),
-        }
+        self.skin_point(node).mean(node, &self.state.velocity)
     }
 
     /// Recomputes the skin points of nodes.
     pub(super) fn update_skin_points(&mut self, nodes: &[NodeId]) {
         let capacity = self.topology.mesh.node_capacity();
-        self.cache
-            .skin_points
-            .resize(capacity, SkinPoint::default());
+        self.cache.skin_points.resize(capacity, SkinPoint::NODE);
         for &node in nodes {
             let point = self
                 .topology
                 .mesh
                 .is_alive(node)
                 .then(|| self.skin_point_of(node));
-            self.cache.skin_points[node] = point.flatten().unwrap_or_default();
+            self.cache.skin_points[node] = point.flatten().unwrap_or(SkinPoint::NODE);
         }
     }
 

@@ -192,7 +192,7 @@ impl<D: Dim> VoxelGrid<D> {
     /// [`Error::InvalidParameter`] if the number of offsets is not that of the surface points, or if one is longer than a
     /// voxel, which is 64.
     pub fn with_surface_offsets(mut self, offsets: Vec<i8>) -> Result<Self, Error> {
-        let count = skin::surface_count(&self);
+        let count = skin::surface_points(&self).len();
         if offsets.len() != count {
             let expected = format!("{count} offsets, one for each surface point");
             return Err(Error::parameter("surface", expected, offsets.len()));
@@ -303,11 +303,11 @@ impl<D: Dim> VoxelGrid<D> {
         let are_solid = |(&gone, &material): (&bool, &u8)| !gone || material != 0;
         let gone = &self.removed;
         let is_known = gone.is_empty() || gone.len() == self.materials.len();
-        let has_points = |grid: &Self| {
-            let is_complete = || grid.surface.len() == skin::surface_count(grid);
-            grid.surface.is_empty() || skin::are_offsets(&grid.surface) && is_complete()
+        let has_points = || {
+            let is_complete = || self.surface.len() == skin::surface_points(self).len();
+            self.surface.is_empty() || skin::are_offsets(&self.surface) && is_complete()
         };
-        is_box && is_known && has_points(self) && gone.iter().zip(&self.materials).all(are_solid)
+        is_box && is_known && has_points() && gone.iter().zip(&self.materials).all(are_solid)
     }
 
     fn checked_size(size: [usize; 3]) -> Result<Point, Error> {

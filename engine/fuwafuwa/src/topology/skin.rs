@@ -1,9 +1,9 @@
 //! Smooth surface of a voxel grid: the smooth shape that the voxels approximate.
 //!
 //! Voxels decide where material is. Rigid shapes, queries and the renderer see the skin; two soft bodies touch at
-//! their contact spheres. Each lattice point of the
-//! original surface has an offset to the skin. Offsets are exact if the grid knows its surface (see
-//! [`VoxelGrid::from_distance`]); otherwise they smooth the staircase by at most half a voxel on each axis.
+//! their contact spheres. Each surface point, a lattice point between solid and empty voxels, has an offset to the
+//! skin. Offsets are exact if the grid knows its surface (see [`VoxelGrid::from_distance`]); otherwise they smooth
+//! the staircase by at most half a voxel on each axis.
 //!
 //! ```text
 //!        ▁▂▃▄▄▃▂▁          skin
@@ -37,59 +37,50 @@ const DESCENT: f32 = 0.22;
 /// Smooth surface of a voxel grid.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Skin {
-    surface: SurfacePoints,
+    /// Surface points, as [`surface_points`] returns them.
+    points: Vec<Point>,
     /// Offset of each surface point [voxels].
     offsets: Vec<Vec3>,
-}
-
-/// Lattice points of the original surface, in memory order of the lattice: the first axis fastest.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct SurfacePoints {
-    points: Vec<Point>,
 }
 
 impl Skin {
     /// Returns the skin of a grid.
     #[inline(never)]
     pub fn of<D: Dim>(grid: &VoxelGrid<D>) -> Self {
-        let surface = SurfacePoints::of(grid);
+        let points = surface_points(grid);
         let offsets: Vec<Vec3> = match grid.surface_offsets() {
-            Some(known) if known.len() == surface.points.len() => {
-                let both = surface.points.iter().zip(known);
+            Some(known) if known.len() == points.len() => {
+                let both = points.iter().zip(known);
                 both.map(|(&at, &steps)| outward(grid, at) * (f32::from(steps) / STEPS))
                     .collect()
             }
-            _ => smoothed(grid, &surface),
+            _ => smoothed(grid, &points),
         };
-        Self { surface, offsets }
+        Self { points, offsets }
     }
 
     /// Returns the offset of a lattice point [voxels]; 0 if the point is not on the original surface.
     pub fn offset(&self, at: Point) -> Vec3 {
-        self.surface
-            .index(at)
-            .map_or(Vec3::ZERO, |index| self.offsets[index])
+        index_of(&self.points, at).map_or(Vec3::ZERO, |index| self.offsets[index])
     }
 }
 
-impl SurfacePoints {
-    fn of<D: Dim>(grid: &VoxelGrid<D>) -> Self {
-        let mut high = grid.size();
-        high[D::N..].fill(0);
-        let is_surface = |&at: &Point| {
-            let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
-            let solid = voxels.filter(|&voxel| grid.is_solid(voxel)).count();
-            (1..D::CORNERS).contains(&solid)
-        };
-        Self {
-            points: points_in([0; 3], high).filter(is_surface).collect(),
-        }
-    }
+/// Returns the surface points of a grid in memory order of the lattice: the first axis fastest.
+pub fn surface_points<D: Dim>(grid: &VoxelGrid<D>) -> Vec<Point> {
+    let mut high = grid.size();
+    high[D::N..].fill(0);
+    let is_surface = |&at: &Point| {
+        let voxels = (0..D::CORNERS).map(|octant| voxel_around::<D>(at, octant));
+        let solid = voxels.filter(|&voxel| grid.is_solid(voxel)).count();
+        (1..D::CORNERS).contains(&solid)
+    };
+    points_in([0; 3], high).filter(is_surface).collect()
+}
 
-    fn index(&self, at: Point) -> Option<usize> {
-        let key = |&[x, y, z]: &Point| [z, y, x];
-        self.points.binary_search_by_key(&key(&at), key).ok()
-    }
+/// Returns the index of a lattice point among surface points.
+fn index_of(points: &[Point], at: Point) -> Option<usize> {
+    let key = |&[x, y, z]: &Point| [z, y, x];
+    points.binary_search_by_key(&key(&at), key).ok()
 }
 
 /// Returns the offset of each surface point along its outward direction [1/64 voxel]. `distance` is the signed
@@ -105,7 +96,7 @@ pub fn measured<D: Dim>(grid: &VoxelGrid<D>, distance: impl Fn(Vec3) -> f32) -> 
         }
         if offset.is_finite() { offset } else { 0.0 }
     };
-    let points = SurfacePoints::of(grid).points.into_iter();
+    let points = surface_points(grid).into_iter();
     points.map(|at| (along(at) * STEPS).round() as i8).collect()
 }
 
@@ -113,11 +104,6 @@ pub fn measured<D: Dim>(grid: &VoxelGrid<D>, distance: impl Fn(Vec3) -> f32) -> 
 pub fn are_offsets(steps: &[i8]) -> bool {
     let limit = (MAX_OFFSET * STEPS) as u8;
     steps.iter().all(|steps| steps.unsigned_abs() <= limit)
-}
-
-/// Returns the number of surface points of a grid.
-pub fn surface_count<D: Dim>(grid: &VoxelGrid<D>) -> usize {
-    SurfacePoints::of(grid).points.len()
 }
 
 fn place(at: Point) -> Vec3 {
@@ -147,11 +133,11 @@ fn outward<D: Dim>(grid: &VoxelGrid<D>, at: Point) -> Vec3 {
 
 /// Returns offsets that smooth the staircase of a grid: they minimise the bending of the surface, within
 /// [`BAND`], by accelerated gradient descent [Beck 2009]. Sharp edges stay.
-fn smoothed<D: Dim>(grid: &VoxelGrid<D>, surface: &SurfacePoints) -> Vec<Vec3> {
-    let neighbours = neighbours(grid, surface);
-    let is_sharp = surface.points.iter().map(|&at| is_sharp(grid, at));
+fn smoothed<D: Dim>(grid: &VoxelGrid<D>, points: &[Point]) -> Vec<Vec3> {
+    let neighbours = neighbours(grid, points);
+    let is_sharp = points.iter().map(|&at| is_sharp(grid, at));
     let is_sharp: Vec<bool> = is_sharp.collect();
-    let rest: Vec<Vec3> = surface.points.iter().map(|&at| place(at)).collect();
+    let rest: Vec<Vec3> = points.iter().map(|&at| place(at)).collect();
     let mean = |values: &[Vec3], k: usize| {
         let sum: Vec3 = neighbours[k]
             .iter()
@@ -190,12 +176,12 @@ fn smoothed<D: Dim>(grid: &VoxelGrid<D>, surface: &SurfacePoints) -> Vec<Vec3> {
 }
 
 /// Returns the neighbours of each surface point along the edges of bare faces, ascending.
-fn neighbours<D: Dim>(grid: &VoxelGrid<D>, surface: &SurfacePoints) -> Vec<Vec<u32>> {
-    let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); surface.points.len()];
+fn neighbours<D: Dim>(grid: &VoxelGrid<D>, points: &[Point]) -> Vec<Vec<u32>> {
+    let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); points.len()];
     let corners = D::CORNERS / 2;
     for voxel in grid.voxels().filter(|&voxel| grid.is_solid(voxel)) {
         for face in (0..2 * D::N).filter(|&face| !grid.is_solid(beyond(voxel, face))) {
-            let ring = face_corners::<D>(face).map(|k| surface.index(add(voxel, corner(k))));
+            let ring = face_corners::<D>(face).map(|k| index_of(points, add(voxel, corner(k))));
             for k in 0..corners {
                 let (Some(a), Some(b)) = (ring[k], ring[(k + 1) % corners]) else {
                     continue;
@@ -276,7 +262,7 @@ mod tests {
 
     fn lengths<D: Dim>(grid: &VoxelGrid<D>) -> Vec<(Point, Vec3)> {
         let skin = Skin::of(grid);
-        let points = skin.surface.points.iter().copied();
+        let points = skin.points.iter().copied();
         points.zip(skin.offsets.iter().copied()).collect()
     }
 

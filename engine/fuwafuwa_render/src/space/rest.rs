@@ -3,7 +3,7 @@
 //! Offsets are in voxels and in the frame of the body at rest; a deformed body carries them along.
 
 use fuwafuwa::inspect::{Connectivity, Groups};
-use fuwafuwa::inspect::{add, corner, face_corners, points_in, voxel_around};
+use fuwafuwa::inspect::{add, beyond, corner, face_corners, points_in, voxel_around};
 use fuwafuwa::{Dim, Dim3, Point, SoftBody, VoxelGrid};
 use glam::Vec3;
 
@@ -200,9 +200,7 @@ impl Rest {
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); self.points.len()];
         for voxel in grid.voxels().filter(|&voxel| grid.is_solid(voxel)) {
             for face in 0..6 {
-                let mut beyond = voxel;
-                beyond[face / 2] += 2 * (face % 2) as i32 - 1;
-                if grid.is_solid(beyond) {
+                if grid.is_solid(beyond(voxel, face)) {
                     continue;
                 }
                 let ring = face_corners::<Dim3>(face)

@@ -17,7 +17,7 @@ use crate::colours::SoftColours;
 use bevy_math::{Vec2, Vec3};
 use fuwafuwa::IndexVec;
 use fuwafuwa::inspect::Element;
-use fuwafuwa::inspect::{add, corner, face_corners};
+use fuwafuwa::inspect::{add, beyond, corner, face_corners};
 use fuwafuwa::inspect::{slot_at, slot_index};
 use fuwafuwa::{Bookmark, Changes, Dim, Dim2, ElementId, NodeId, SoftBody};
 
@@ -222,9 +222,7 @@ impl PlaneSurface {
         }
         for face in (0..4).filter(|face| bare >> face & 1 == 1) {
             let [from, to, ..] = face_corners::<Dim2>(face).map(|corner| element.nodes[corner]);
-            let mut beyond = element.cell.at;
-            beyond[face / 2] += 2 * (face % 2) as i32 - 1;
-            let is_fresh = body.grid().is_solid(beyond);
+            let is_fresh = body.grid().is_solid(beyond(element.cell.at, face));
             let offsets = [from, to].map(|node| match is_fresh {
                 true => Vec3::ZERO,
                 false => Vec3::from_array(body.skin_offset(body.mesh().node(node).at).to_array()),

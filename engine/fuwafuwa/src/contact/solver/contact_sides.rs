@@ -4,7 +4,7 @@ use super::contact_row::Contact;
 use crate::foundation::arena::RigidSlot;
 use crate::foundation::ids::{IndexVec, id};
 use crate::math::row::Row;
-use crate::soft_body::skin_point::own_weight;
+use crate::soft_body::skin_point::SkinPoint;
 use glam::Vec3;
 
 id! {
@@ -18,9 +18,8 @@ pub struct NodeContact {
     pub contact: Contact,
     /// Velocity row of the node.
     pub node: NodeRow,
-    /// Velocity rows of the neighbours of the node's skin point, and their weights; `None` if the contact is at
-    /// the node itself.
-    pub neighbours: Option<([NodeRow; 3], [f32; 3])>,
+    /// Point of the contact, relative to the velocity rows.
+    pub point: SkinPoint<NodeRow>,
     /// Rigid body, if it can move, and the lever arm from the body's position to the contact [m].
     pub mover: Option<(RigidSlot, Vec3)>,
 }
@@ -29,15 +28,7 @@ impl NodeContact {
     /// Returns the value of a quantity at the contact, given its value at each node.
     #[inline(always)]
     pub fn mean(&self, rows: &IndexVec<NodeRow, Row>) -> Row {
-        let own = rows[self.node];
-        let Some((neighbours, weights)) = self.neighbours else {
-            return own;
-        };
-        let mut sum = own * own_weight(weights);
-        for axis in 0..3 {
-            sum += rows[neighbours[axis]] * weights[axis];
-        }
-        sum
+        self.point.mean(self.node, rows)
     }
 }
 

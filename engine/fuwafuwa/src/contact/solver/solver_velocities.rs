@@ -9,7 +9,7 @@ use crate::foundation::ids::{Id, IndexVec, NodeId};
 use crate::rigid_body::RigidBodies;
 use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
-use crate::soft_body::skin_point;
+use crate::soft_body::skin_point::SkinPoint;
 use glam::Vec3;
 
 /// Number of nodes in a chunk of `SolverVelocities`. A chunk with any node in contact is copied as a whole.
@@ -154,16 +154,18 @@ impl SolverVelocities {
     ) {
         // The fourth component is the inverse mass of the node, which no impulse changes.
         let impulse = with_fourth(impulse, 0.0);
-        let mut own_weight = 1.0;
-        if let Some((neighbours, weights)) = row.neighbours {
-            own_weight = skin_point::own_weight(weights);
+        let SkinPoint {
+            neighbours,
+            weights,
+        } = row.point;
+        if !row.point.is_node() {
             for axis in 0..3 {
                 let other = &mut self.rows[neighbours[axis]];
                 *other += impulse * (weights[axis] * other[3]);
             }
         }
         let own = &mut self.rows[row.node];
-        *own += impulse * (own_weight * own[3]);
+        *own += impulse * (row.point.own_weight() * own[3]);
         if !self.scaled.is_empty() {
             self.scaled.push_node::<D>(row, impulse);
         }
