@@ -31,11 +31,13 @@ const BLADE: [f32; 3] = [0.015, 0.01, 0.0006];
 /// Tip radius of the forceps [m]. [`THINNEST`] enlarges it for coarse organs.
 const TIP: f32 = 0.002;
 /// Minimum radius of the forceps' tip and the hook's bar [voxels of the organ]. A thinner tool would slip
-/// between nodes when it is pressed in deeply.
-const THINNEST: f32 = 1.5;
+/// between nodes when it is pressed in deeply. The jaws attach at least as large a region: a single node would be
+/// pulled out of the smooth surface.
+const THINNEST: f32 = 2.0;
 /// Maximum distance from the surface of the tip at which tissue is gripped [m].
 const REACH: f32 = 0.004;
-/// Radius around the gripped point within which nodes are attached to the forceps [m].
+/// Radius around the gripped point within which nodes are attached to the forceps [m]. [`THINNEST`] enlarges it
+/// for coarse organs.
 const JAW: f32 = 0.004;
 /// Radius of the drawn jaws [m].
 const JAW_RADIUS: f32 = 0.0013;
@@ -212,7 +214,8 @@ impl HeldTool {
             && self.tool == Tool::Forceps
             && let Some(at) = nearest(world.soft_body(organ)?, &self.rigid(world).shape())
         {
-            let soft = JointAnchor::on(organ, at).within(JAW);
+            let jaw = JAW.max(thinnest(world.soft_body(organ)?));
+            let soft = JointAnchor::on(organ, at).within(jaw);
             let rigid = JointAnchor::on(self.holder, at);
             let joint = Joint::pin(soft, rigid).with_breaking_force(SLIPS);
             let held = self.rigid(world);

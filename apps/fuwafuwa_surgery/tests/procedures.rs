@@ -184,17 +184,12 @@ fn forceps_hold_and_release_tissue() {
     go(
         &mut procedure,
         input,
-        &[at(top + 0.015), at(top + 0.016)],
-        0.01,
+        &[at(top + 0.015), at(top + 0.04)],
+        0.04,
     );
     assert!(!procedure.held().grips());
     // Far above the organ there is nothing to grip.
-    go(
-        &mut procedure,
-        closed,
-        &[at(top + 0.04), at(top + 0.05)],
-        0.04,
-    );
+    go(&mut procedure, closed, &[at(top + 0.05)], 0.04);
     assert!(!procedure.held().grips());
 }
 
