@@ -164,7 +164,7 @@ impl Contacts {
                     let (own_gap, own_normal) =
                         rigid.shape().distance(body.positions()[node].xyz());
                     if own_gap + outside < gap {
-                        point = SkinPoint::NODE;
+                        point = SkinPoint::at(node);
                         (gap, normal) = (own_gap + outside, own_normal);
                         (at, velocity) = (body.positions()[node], body.velocities()[node]);
                     }

@@ -22,11 +22,14 @@ pub struct SkinPoint<I = NodeId> {
 }
 
 impl SkinPoint {
-    /// The node itself, as in the interior and on flat faces.
-    pub const NODE: Self = Self {
-        neighbours: [NodeId(0); 3],
-        weights: [0.0; 3],
-    };
+    /// Returns the point at the node itself, as in the interior and on flat faces.
+    #[inline(always)]
+    pub fn at(node: NodeId) -> Self {
+        Self {
+            neighbours: [node; 3],
+            weights: [0.0; 3],
+        }
+    }
 
     /// Sum of the absolute weights of the neighbours: an upper bound of the distance between node and point
     /// [voxels].
@@ -129,14 +132,16 @@ impl<D: Dim> SoftBody<D> {
     /// Recomputes the skin points of nodes.
     pub(super) fn update_skin_points(&mut self, nodes: &[NodeId]) {
         let capacity = self.topology.mesh.node_capacity();
-        self.cache.skin_points.resize(capacity, SkinPoint::NODE);
+        self.cache
+            .skin_points
+            .resize(capacity, SkinPoint::at(NodeId(0)));
         for &node in nodes {
             let point = self
                 .topology
                 .mesh
                 .is_alive(node)
                 .then(|| self.skin_point_of(node));
-            self.cache.skin_points[node] = point.flatten().unwrap_or(SkinPoint::NODE);
+            self.cache.skin_points[node] = point.flatten().unwrap_or(SkinPoint::at(node));
         }
     }
 
@@ -164,10 +169,7 @@ impl<D: Dim> SoftBody<D> {
         if element.cell.level > 0 || element.nodes[own] != id {
             return None;
         }
-        let mut point = SkinPoint {
-            neighbours: [id; 3],
-            weights: [0.0; 3],
-        };
+        let mut point = SkinPoint::at(id);
         for axis in 0..D::N {
             point.neighbours[axis] = element.nodes[own ^ 1 << axis];
             point.weights[axis] = offset[axis] * side(octant, axis);
