@@ -30,22 +30,23 @@ pub struct Material {
     /// rate, a bounce would stop the rotation. With 0, crumbs roll like balls. Larger pieces have corners and do
     /// not use it. A body of several materials uses the mean over its voxels.
     pub rolling_resistance: f32,
-    /// Tensile strength of a smooth surface [Pa]: the tension at which a crack starts; infinite = never
+    /// Tensile strength of a smooth surface [Pa], default 1000: the tension at which a crack starts; infinite = never
     /// tears. A player can tear a body with a strength of a fifth of Young's modulus by hand.
+    ///
+    /// The tension is the mean over the radius (2/π) (toughness / strength)² [Taylor 2007], at least a voxel
+    /// and at most 8 voxels in 2D and 4 in 3D. Below a voxel it is extrapolated.
     pub strength: f32,
     /// Scatter of the strength, 0 to 10, default 0.4: at each lattice point of a smooth surface, the strength is
     /// raised by a fixed pseudo-random part, at most by this factor. With 0, a row of equally loaded points fails
     /// at once.
     pub strength_scatter: f32,
-    /// Fracture toughness [Pa √m]; default 200. A crack grows if the tension at its tip exceeds toughness /
-    /// √voxel size.
+    /// Fracture toughness K_Ic [Pa √m] in plane strain, default 150; infinite = cracks that have started do not
+    /// grow. A crack grows as soon as its energy release rate exceeds the [fracture
+    /// energy](Self::fracture_energy), in the direction that releases most energy [Griffith 1921]. Neither depends
+    /// on the size or the direction of the voxels.
     ///
-    /// Smaller voxels resolve a sharper crack tip, at which the tension grows with 1/√voxel size. The
-    /// threshold grows in the same way, so that a body tears at the same load at every resolution [Griffith
-    /// 1921].
-    ///
-    /// Rule of thumb, with toughness in Pa √m and strength in Pa: at toughness = 0.2 strength, a crack that
-    /// has started keeps running; at toughness = 0.5 strength, cracks stop near the surface.
+    /// Rule of thumb, with toughness in Pa √m and strength in Pa: at toughness = 0.15 strength, a crack that
+    /// has started keeps running; at toughness = 0.4 strength, cracks stop near the surface.
     pub toughness: f32,
     /// Yield strain; infinite (default) = purely elastic, like rubber. Strain beyond the yield strain becomes
     /// permanent; volume is preserved.
@@ -82,7 +83,7 @@ impl Default for Material {
             rolling_resistance: 20.0,
             strength: 1000.0,
             strength_scatter: 0.4,
-            toughness: 200.0,
+            toughness: 150.0,
             yield_strain: f32::INFINITY,
             plastic_limit: 2.0,
         }
@@ -108,7 +109,13 @@ impl Material {
         within("rolling_resistance", rolling, 0.0, 1000.0, "0 to 1000")?;
         let infinite = f32::INFINITY;
         within("strength", self.strength, tiny, infinite, "positive")?;
-        within("strength_scatter", self.strength_scatter, 0.0, 10.0, "0 to 10")?;
+        within(
+            "strength_scatter",
+            self.strength_scatter,
+            0.0,
+            10.0,
+            "0 to 10",
+        )?;
         within("toughness", self.toughness, tiny, infinite, "positive")?;
         within(
             "yield_strain",
@@ -163,9 +170,11 @@ impl Material {
         })
     }
 
-    /// Fracture energy per area of crack: toughness² / Y [J/m²] [Irwin 1957].
+    /// Fracture energy per area of crack in plane strain: toughness² (1 − ν²) / Y [J/m²] [Irwin 1957].
     pub fn fracture_energy(&self) -> f32 {
-        (f64::from(self.toughness) * f64::from(self.toughness) / self.elasticity.young) as f32
+        let Elasticity { young, poisson } = self.elasticity;
+        let toughness = f64::from(self.toughness);
+        (toughness * toughness * (1.0 - poisson * poisson) / young) as f32
     }
 
     /// Speed of a pressure wave [m/s]: √((λ + 2µ) / ρ), with Lamé's parameters λ and µ and the density ρ.

@@ -61,7 +61,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "young",
             "yuong",
-            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `density`, `mass_damping`, `stiffness_damping`, `damping`, `friction`, `rolling_resistance`, `strength`, `toughness`, `yield_strain`, `plastic_limit`, `unbreakable`, `colour`",
+            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `density`, `mass_damping`, `stiffness_damping`, `damping`, `friction`, `rolling_resistance`, `strength`, `strength_scatter`, `toughness`, `yield_strain`, `plastic_limit`, `unbreakable`, `colour`",
         ),
         (
             "\"ball\"",

@@ -77,7 +77,9 @@ impl<'a, D: Dim> NearField<'a, D> {
         let mut force = Vec3::ZERO;
         for place in 0..self.near.len() {
             let (id, _) = self.near[place];
-            let element = mesh.element(id).expect("elements that own voxels are alive");
+            let element = mesh
+                .element(id)
+                .expect("elements that own voxels are alive");
             let class = mesh.element_class(element);
             let half = half_voxel * element.cell.width() as f32;
             // V ∇q, in voxel faces times half the width of the element.
@@ -127,8 +129,7 @@ impl<'a, D: Dim> NearField<'a, D> {
             let share = share / ratio;
             for row in 0..D::N {
                 for column in 0..D::N {
-                    sum[row][column] +=
-                        share * load.stress[row].dot(load.deformation[column]);
+                    sum[row][column] += share * load.stress[row].dot(load.deformation[column]);
                 }
             }
         }
@@ -246,7 +247,9 @@ impl Front {
 /// and its rotation in the last substep.
 fn load_of<D: Dim>(body: &SoftBody<D>, id: ElementId) -> Load {
     let mesh = body.mesh();
-    let element = mesh.element(id).expect("elements that own voxels are alive");
+    let element = mesh
+        .element(id)
+        .expect("elements that own voxels are alive");
     let class = mesh.element_class(element);
     let half = 0.5 * body.grid().voxel_size() * element.cell.width() as f32;
     let scale = 1.0 / (class.volume as f32 * half);
@@ -278,7 +281,8 @@ fn load_of<D: Dim>(body: &SoftBody<D>, id: ElementId) -> Load {
     let elastic = product(&deformation, &plastic);
     let soft = plastic_stiffness_factor::<D>(&plastic.map(|row| row.as_dvec3())) as f32;
     let (stress, energy) = elastic_stress::<D>(elasticity, &elastic, &rotation);
-    let transposed = [0, 1, 2].map(|k: usize| Vec3::new(plastic[0][k], plastic[1][k], plastic[2][k]));
+    let transposed =
+        [0, 1, 2].map(|k: usize| Vec3::new(plastic[0][k], plastic[1][k], plastic[2][k]));
     Load {
         deformation,
         stress: product(&stress, &transposed).map(|row| row * soft),
@@ -289,7 +293,11 @@ fn load_of<D: Dim>(body: &SoftBody<D>, id: ElementId) -> Load {
 /// Returns the first Piola–Kirchhoff stress [Pa] and the energy density [J/m³] of an elastic deformation with
 /// a known rotation, as in [`Law::CorotationalVem`](crate::Law::CorotationalVem) without the resistance to
 /// crushing.
-fn elastic_stress<D: Dim>(elasticity: Elasticity, deformation: &Rows, rotation: &Rows) -> (Rows, f32) {
+fn elastic_stress<D: Dim>(
+    elasticity: Elasticity,
+    deformation: &Rows,
+    rotation: &Rows,
+) -> (Rows, f32) {
     let (shear, lame) = (elasticity.shear_modulus() as f32, elasticity.lame() as f32);
     let mut stress = [Vec3::ZERO; 3];
     let (mut spread, mut squared) = (-(D::N as f32), 0.0);
@@ -346,4 +354,131 @@ fn greatest_eigenvalue<D: Dim>(matrix: &Rows) -> f32 {
 fn distance<D: Dim>(offset: [f32; 3]) -> f32 {
     let squares = offset.into_iter().take(D::N).map(|k| k * k);
     squares.sum::<f32>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::foundation::dim::{Dim2, Dim3, DimVector};
+    use crate::fracture::blade::Blade;
+    use crate::material::Material;
+    use crate::topology::grid::VoxelGrid;
+
+    /// Mode I and mode II stress intensities [Pa √m].
+    type Intensities = [f32; 2];
+
+    /// Displacement [m] near a crack tip in plane strain, from the offset to the tip [m] [Williams 1957]. The
+    /// crack runs along the first axis, towards positive values.
+    fn williams(material: &Material, [first, second]: Intensities, offset: Vec3) -> Vec3 {
+        let shear = material.elasticity.shear_modulus() as f32;
+        let kappa = 3.0 - 4.0 * material.elasticity.poisson as f32;
+        let radius = offset.x.hypot(offset.y);
+        let angle = 0.5 * offset.y.atan2(offset.x);
+        let (sine, cosine) = angle.sin_cos();
+        let open = Vec3::new(
+            cosine * (kappa - 1.0 + 2.0 * sine * sine),
+            sine * (kappa + 1.0 - 2.0 * cosine * cosine),
+            0.0,
+        );
+        let slide = Vec3::new(
+            sine * (kappa + 1.0 + 2.0 * cosine * cosine),
+            -cosine * (kappa - 1.0 - 2.0 * sine * sine),
+            0.0,
+        );
+        let scale = (radius / std::f32::consts::TAU).sqrt() / (2.0 * shear);
+        (open * first + slide * second) * scale
+    }
+
+    /// Places the nodes of a cracked body in the field of [`williams`], turns the body, and returns J divided
+    /// by its exact value, and the error of its direction [degrees].
+    fn check_release<D: Dim>(blade: &Blade<D>, depth: f32, intensities: Intensities) -> (f32, f32) {
+        let material = Material::default();
+        let (n, size) = (16, 1.0 / 16.0);
+        let grid = VoxelGrid::<D>::cube(n, 1.0).unwrap();
+        let mut body = SoftBody::new(grid, &[material]).unwrap();
+        body.cut(blade);
+        let tip_at = [8, 8, if D::N == 2 { 0 } else { 8 }];
+        let mesh = body.mesh();
+        let tip = mesh.nodes_at(tip_at, body.connectivity());
+        let tip = tip
+            .filter(|&id| body.breakable_nodes().is_tip(id))
+            .next()
+            .unwrap();
+        let turn = crate::math::rotation::Rotation::in_plane(0.7);
+        let nodes: Vec<NodeId> = mesh.nodes().map(|(id, _)| id).collect();
+        for id in nodes {
+            let at = Vec3::from(body.mesh().node(id).at.map(|k| k as f32 * size));
+            let mut offset = at - Vec3::new(0.5, 0.5, depth);
+            if offset.y == 0.0 && offset.x < 0.0 {
+                // Nodes of the two crack faces, which the voxels of the node tell apart.
+                let is_upper = body.mesh().node(id).group & 0b0011_0011 == 0;
+                offset.y = if is_upper { 1e-7 } else { -1e-7 };
+            }
+            let moved = turn.apply(at + williams(&material, intensities, offset));
+            body.set_node_state(id, D::Vector::from_vec3(moved), D::Vector::ZERO)
+                .unwrap();
+        }
+        body.apply_forces(1e-9, Vec3::ZERO);
+        let rotation = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| turn.inverse().apply(axis));
+        let along = [-2.0, -1.0, 1.0, 2.0].map(|k| Vec3::Z * k);
+        let front = Front::near::<D>(size, &along);
+        let release = NearField::new(&body).energy_release(tip, &rotation, front);
+        let [first, second] = intensities;
+        let poisson = material.elasticity.poisson as f32;
+        let stiffness = material.elasticity.young as f32 / (1.0 - poisson * poisson);
+        let exact =
+            Vec3::new(first * first + second * second, -2.0 * first * second, 0.0) / stiffness;
+        let angle = release.y.atan2(release.x) - exact.y.atan2(exact.x);
+        (release.length() / exact.length(), angle.to_degrees())
+    }
+
+    #[test]
+    fn energy_release_matches_field_of_williams() {
+        for intensities in [[5.0, 0.0], [5.0, 1.0], [5.0, -2.5]] {
+            let blade = Blade::segment(glam::Vec2::new(-0.1, 0.501), glam::Vec2::new(0.49, 0.501));
+            let (ratio, angle) = check_release::<Dim2>(&blade, 0.0, intensities);
+            assert!(
+                (ratio - 1.0).abs() < 0.08 && angle.abs() < 3.0,
+                "{ratio} {angle}"
+            );
+            let blade =
+                Blade::parallelogram(Vec3::new(-0.1, 0.501, -0.1), Vec3::X * 0.59, Vec3::Z * 1.2);
+            let (ratio, angle) = check_release::<Dim3>(&blade, 0.0, intensities);
+            assert!(
+                (ratio - 1.0).abs() < 0.15 && angle.abs() < 5.0,
+                "{ratio} {angle}"
+            );
+        }
+    }
+
+    #[test]
+    fn greatest_eigenvalue_matches_known_matrices() {
+        let rows = |rows: [[f32; 3]; 3]| rows.map(Vec3::from);
+        let diagonal = rows([[1.0, 0.0, 0.0], [0.0, -4.0, 0.0], [0.0, 0.0, 3.0]]);
+        assert!((greatest_eigenvalue::<Dim3>(&diagonal) - 3.0).abs() < 1e-5);
+        assert!((greatest_eigenvalue::<Dim2>(&diagonal) - 1.0).abs() < 1e-5);
+        let shear = rows([[0.0, 2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.0]]);
+        assert!((greatest_eigenvalue::<Dim3>(&shear) - 2.0).abs() < 1e-5);
+        assert!((greatest_eigenvalue::<Dim2>(&shear) - 2.0).abs() < 1e-5);
+        let all = rows([[2.0, 1.0, 1.0], [1.0, 2.0, 1.0], [1.0, 1.0, 2.0]]);
+        assert!((greatest_eigenvalue::<Dim3>(&all) - 4.0).abs() < 1e-5);
+        let equal = rows([[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]);
+        assert_eq!(greatest_eigenvalue::<Dim3>(&equal), 2.0);
+    }
+
+    #[test]
+    fn weight_along_a_line_is_its_integral() {
+        let steps = 2000;
+        for reach in [0.5f32, 1.5, 1.8, 2.0, 5.0] {
+            let step = reach / steps as f32;
+            let sum: f32 = (0..steps)
+                .map(|k| {
+                    let apart = (k as f32 + 0.5) * step;
+                    let radius = outer_radius::<Dim3>();
+                    ((radius - apart) / (radius - INNER_RADIUS)).clamp(0.0, 1.0) * step
+                })
+                .sum();
+            assert!((weight_along::<Dim3>(reach) - sum).abs() < 1e-3, "{reach}");
+        }
+    }
 }

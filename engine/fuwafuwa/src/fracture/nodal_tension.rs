@@ -67,13 +67,21 @@ impl NodalForces {
     pub fn mean_rotation(&self) -> [Vec3; 3] {
         let [first, second, _] = self.rotation;
         let first = first.normalize_or(Vec3::X);
-        let second = (second - first * first.dot(second)).normalize_or(first.any_orthonormal_vector());
+        let second =
+            (second - first * first.dot(second)).normalize_or(first.any_orthonormal_vector());
         [first, second, first.cross(second)]
     }
 
-    /// Returns the tension of a cut [N]: tension times area. `None` if the sides are not pulled apart.
-    pub fn pull(&self, cut: &NodeCut) -> Option<f32> {
-        let far = octants(cut.side).map(|octant| self.forces[octant]).sum::<Row>();
+    /// Returns the tension of a cut. `None` if the sides are not pulled apart.
+    pub fn tension<D: Dim>(
+        &self,
+        body: &SoftBody<D>,
+        node: &BreakableNode,
+        cut: &NodeCut,
+    ) -> Option<CutTension> {
+        let far = octants(cut.side)
+            .map(|octant| self.forces[octant])
+            .sum::<Row>();
         let near = self.total - far;
         let axis = cut.axis as usize;
         let [x, y, z] = self.rotation.map(|row| row[axis]);
@@ -81,7 +89,13 @@ impl NodalForces {
         if far.xyz().dot(normal) <= 0.0 || near.xyz().dot(normal) >= 0.0 {
             return None;
         }
-        Some(tension((far - near) * 0.5, Row::from(normal)))
+        let area = f32::from(cut.faces) * face_area::<D>(body.grid().voxel_size());
+        let tension = tension((far - near) * 0.5, Row::from(normal)) / area;
+        Some(CutTension {
+            tension,
+            excess: tension / (node.threshold * crumb_factor(node, cut)),
+            cut: *cut,
+        })
     }
 
     /// Returns the cut with the highest tension relative to its threshold, if that is above `least`.
@@ -91,20 +105,13 @@ impl NodalForces {
         node: &BreakableNode,
         least: f32,
     ) -> Option<CutTension> {
-        let size = body.grid().voxel_size();
         let mut worst: Option<CutTension> = None;
         for cut in body.breakable_nodes().cuts(node) {
-            let area = f32::from(cut.faces) * face_area::<D>(size);
-            let threshold = node.threshold * crumb_factor(node, cut);
-            let Some(pull) = self.pull(cut) else { continue };
-            let (tension, least) = (pull / area, worst.map_or(least, |worst| worst.excess));
-            if tension > least * threshold {
-                let (excess, cut) = (tension / threshold, *cut);
-                worst = Some(CutTension {
-                    tension,
-                    excess,
-                    cut,
-                });
+            let least = worst.map_or(least, |worst| worst.excess);
+            if let Some(tension) = self.tension(body, node, cut)
+                && tension.excess > least
+            {
+                worst = Some(tension);
             }
         }
         worst

@@ -55,7 +55,11 @@ impl TipDeviations {
     }
 
     /// Removes the deviations at those of `points` that are no longer tips.
-    pub fn keep_tips(&mut self, points: impl Iterator<Item = Point>, is_tip: impl Fn(Point) -> bool) {
+    pub fn keep_tips(
+        &mut self,
+        points: impl Iterator<Item = Point>,
+        is_tip: impl Fn(Point) -> bool,
+    ) {
         if self.at.is_empty() {
             return;
         }
@@ -72,6 +76,44 @@ impl TipDeviations {
     pub fn valid_points(&self) -> Option<impl Iterator<Item = Point> + '_> {
         let most = MAX_DEVIATION + 3f32.sqrt();
         let is_valid = |&deviation: &[f32; 3]| Vec3::from(deviation).length() <= most;
-        self.at.values().all(is_valid).then(|| self.at.keys().copied())
+        self.at
+            .values()
+            .all(is_valid)
+            .then(|| self.at.keys().copied())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::foundation::dim::{Dim2, Dim3};
+
+    #[test]
+    fn tips_of_one_front_share_their_deviation() {
+        let mut deviations = TipDeviations::default();
+        let across = |deviation: Vec3| Vec3::Y * deviation.y;
+        deviations.advance([0, 0, 0], [5, 4, 3], Vec3::Y * -0.4);
+        // One step higher, so its deviation from the same plane is 1 higher, apart from an error of 0.2.
+        deviations.advance([0, 0, 0], [5, 5, 4], Vec3::Y * 0.8);
+        // Another crack, three voxels away.
+        deviations.advance([0, 0, 0], [5, 2, 4], Vec3::Y * 0.9);
+        let shared = deviations.of_tip::<Dim3>([5, 4, 3], across);
+        assert!((shared - Vec3::Y * -0.3).length() < 1e-6, "{shared}");
+        let own = deviations.of_tip::<Dim2>([5, 4, 3], across);
+        assert!((own - Vec3::Y * -0.4).length() < 1e-6, "{own}");
+        assert_eq!(deviations.of_tip::<Dim3>([50, 4, 3], across), Vec3::ZERO);
+    }
+
+    #[test]
+    fn deviations_of_former_tips_are_removed() {
+        let mut deviations = TipDeviations::default();
+        deviations.advance([0, 0, 0], [1, 0, 0], Vec3::Y);
+        deviations.advance([0, 0, 0], [2, 0, 0], Vec3::Y);
+        deviations.advance([2, 0, 0], [3, 0, 0], Vec3::Y);
+        deviations.keep_tips([[1, 0, 0], [3, 0, 0]].into_iter(), |at| at == [3, 0, 0]);
+        assert_eq!(
+            deviations.at.keys().copied().collect::<Vec<_>>(),
+            [[3, 0, 0]]
+        );
     }
 }

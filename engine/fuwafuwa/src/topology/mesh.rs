@@ -198,7 +198,11 @@ impl<D: Dim> Mesh<D> {
     }
 
     /// Returns the nodes at a lattice point; none if the point is outside the grid.
-    pub(crate) fn nodes_at(&self, at: Point, connectivity: &Connectivity<D>) -> impl Iterator<Item = NodeId> {
+    pub(crate) fn nodes_at(
+        &self,
+        at: Point,
+        connectivity: &Connectivity<D>,
+    ) -> impl Iterator<Item = NodeId> {
         let is_inside = connectivity.contains(at);
         let nodes = is_inside.then(|| self.by_point.at(connectivity.index(at)));
         nodes.into_iter().flatten()

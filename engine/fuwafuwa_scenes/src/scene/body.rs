@@ -32,6 +32,8 @@ pub struct MaterialText {
     pub rolling_resistance: Option<f32>,
     /// Tensile strength [Pa].
     pub strength: Option<f32>,
+    /// Scatter of the strength, relative to the strength.
+    pub strength_scatter: Option<f32>,
     /// Fracture toughness [Pa √m].
     pub toughness: Option<f32>,
     /// Yield strain, beyond which the deformation is permanent; purely elastic if missing.
@@ -247,6 +249,7 @@ impl MaterialText {
             friction: self.friction.unwrap_or(usual.friction),
             rolling_resistance: self.rolling_resistance.unwrap_or(usual.rolling_resistance),
             strength: borne(self.strength, usual.strength),
+            strength_scatter: self.strength_scatter.unwrap_or(usual.strength_scatter),
             toughness: borne(self.toughness, usual.toughness),
             yield_strain: self.yield_strain.unwrap_or(usual.yield_strain),
             plastic_limit: self.plastic_limit.unwrap_or(usual.plastic_limit),
@@ -271,6 +274,8 @@ impl MaterialText {
                 != Material::default().rolling_resistance)
                 .then_some(material.rolling_resistance),
             strength: finite(material.strength),
+            strength_scatter: (material.strength_scatter != Material::default().strength_scatter)
+                .then_some(material.strength_scatter),
             toughness: finite(material.toughness),
             yield_strain: (material.yield_strain < f32::INFINITY).then_some(material.yield_strain),
             plastic_limit: (material.plastic_limit != Material::default().plastic_limit)
