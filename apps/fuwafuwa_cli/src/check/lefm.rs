@@ -7,13 +7,13 @@
 //! Cracks Handbook), and with the energy of a strip in pure shear in closed form.
 
 use super::Extent;
-use super::bar::plane_strain;
+use super::bar::{POISSON, plane_strain};
 use super::parallel;
-use super::plate::{Intensity, Plate, PlateDim, Pull, Setting, Specimen, TOUGHNESS, WIDTH};
+use super::plate::{around_one, Intensity, Plate, PlateDim, Pull, Setting, Specimen, TOUGHNESS, WIDTH};
 use crate::plot::{Plot, Points};
 use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Context, Result};
-use fuwafuwa::{Dim2, Dim3, Rotation};
+use fuwafuwa::{Dim2, Dim3, Grading, Rotation, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Maximum relative deviation of K at the first growth from the toughness, in 2D and in 3D.
@@ -25,7 +25,7 @@ const ENERGY: f64 = 0.1;
 /// Maximum relative deviation of the reference from published factors.
 const REFERENCE: f64 = 0.02;
 /// Strength [Pa]: far above the stress near a crack, and 5 times the toughness in SI units.
-const STRENGTHS: [f64; 2] = [1e5, 5.0 * TOUGHNESS];
+pub const STRENGTHS: [f64; 2] = [1e5, 5.0 * TOUGHNESS];
 /// Thickness of plates in 3D [m].
 const THICKNESS: f64 = 0.125;
 /// Growth of the opening in the test of steady growth [1/s], relative to the opening at which growth begins.
@@ -33,9 +33,19 @@ const STEADY_RATE: f64 = 0.15;
 /// Range of u in which the crack of the cantilevers grows steadily [m].
 const STEADY: [f64; 2] = [0.0, 0.17];
 
+/// Plates with a crack of a quarter and of half of their width from an edge.
+const EDGES: [Specimen; 2] = [
+    Specimen::Edge {
+        length: 0.25 * WIDTH,
+    },
+    Specimen::Edge {
+        length: 0.5 * WIDTH,
+    },
+];
+
 /// Orientation and motion of a plate in the world.
 #[derive(Copy, Clone, Debug, PartialEq)]
-enum Pose {
+pub enum Pose {
     /// Pulled along the second axis of the world.
     Upright,
     /// Pulled along the first axis of the world, and in 3D along the third.
@@ -44,6 +54,30 @@ enum Pose {
     Turned,
     /// Spinning with its grips by 0.2 rad/s.
     Spinning,
+}
+
+impl Pose {
+    /// Returns the end of the name of a case.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::Upright => "",
+            Self::Lying => ", lying",
+            Self::Turned => ", turned",
+            Self::Spinning => ", spinning",
+        }
+    }
+
+    /// Orients the plate of a pull.
+    pub fn apply<D: PlateDim>(self, pull: &mut Pull) {
+        let quarter = FRAC_PI_2 as f32;
+        match (self, D::N) {
+            (Self::Upright, _) => {}
+            (Self::Lying, 2) => pull.orientation = Rotation::in_plane(-quarter),
+            (Self::Lying, _) => pull.orientation = Rotation::about(Vec3::X, quarter),
+            (Self::Turned, _) => pull.orientation = Rotation::in_plane(30f32.to_radians()),
+            (Self::Spinning, _) => pull.spin = 0.2,
+        }
+    }
 }
 
 /// One measurement.
@@ -62,12 +96,7 @@ impl Case {
     /// Name of all cases that differ in the angle of the lattice only.
     fn group(&self) -> String {
         let strength = if self.is_near { "near" } else { "far" };
-        let pose = match self.pose {
-            Pose::Upright => "",
-            Pose::Lying => ", lying",
-            Pose::Turned => ", turned",
-            Pose::Spinning => ", spinning",
-        };
+        let pose = self.pose.suffix();
         let Self {
             dim,
             voxels,
@@ -111,11 +140,11 @@ pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
         for (case, (intensity, energy)) in group.iter().zip(values) {
             let turned = case.turned;
             let row = format!("{name}, {turned}°, K / toughness");
-            let range = 1.0 - INTENSITY[solid]..=1.0 + INTENSITY[solid];
+            let range = around_one(INTENSITY[solid]);
             outcomes.push(Outcome::within(row, *intensity, range));
             if let Some(energy) = energy {
                 let row = format!("{name}, {turned}°, energy / (toughness² (1 − ν²) / E)");
-                outcomes.push(Outcome::within(row, *energy, 1.0 - ENERGY..=1.0 + ENERGY));
+                outcomes.push(Outcome::within(row, *energy, around_one(ENERGY)));
             }
             let point = (turned, *intensity);
             let label = format!("{}D, {}", case.dim, case.specimen.name());
@@ -137,7 +166,7 @@ pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
         x: "angle of the lattice [°]".into(),
         y: "K at first growth / toughness".into(),
         points: series,
-        band: Some(1.0 - INTENSITY[0]..=1.0 + INTENSITY[0]),
+        band: Some(around_one(INTENSITY[0])),
         ..Plot::default()
     };
     Ok(Findings {
@@ -149,10 +178,7 @@ pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
 /// Returns the measurements.
 fn cases(extent: Extent) -> Vec<Case> {
     let (all, few): (&[f64], &[f64]) = (&[0.0, 10.0, 22.5, 35.0, 45.0], &[0.0, 22.5, 45.0]);
-    let edges = [0.25, 0.5].map(|share| Specimen::Edge {
-        length: share * WIDTH,
-    });
-    let others = [edges[0], edges[1], Specimen::Strip, Specimen::Cantilever];
+    let others = [EDGES[0], EDGES[1], Specimen::Strip, Specimen::Cantilever];
     let mut cases = Vec::new();
     let mut add = |dim, specimen, voxels, poisson, is_near, pose, angles: &[f64]| {
         cases.extend(angles.iter().map(|&turned| Case {
@@ -214,14 +240,7 @@ fn measure<D: PlateDim>(
     let plate = Plate::<D>::new(case.specimen, setting)?;
     let factor = intensity.at(plate.length);
     let mut pull = Pull::slow(TOUGHNESS / factor);
-    let quarter = FRAC_PI_2 as f32;
-    match (case.pose, D::N) {
-        (Pose::Upright, _) => {}
-        (Pose::Lying, 2) => pull.orientation = Rotation::in_plane(-quarter),
-        (Pose::Lying, _) => pull.orientation = Rotation::about(fuwafuwa::Vec3::X, quarter),
-        (Pose::Turned, _) => pull.orientation = Rotation::in_plane(30f32.to_radians()),
-        (Pose::Spinning, _) => pull.spin = 0.2,
-    }
+    case.pose.apply::<D>(&mut pull);
     if is_steady {
         pull.until_first = false;
         pull.rate = STEADY_RATE;
@@ -240,7 +259,7 @@ fn measure<D: PlateDim>(
     Ok((course.first * factor / TOUGHNESS, energy))
 }
 
-/// Compares the reference with published factors.
+/// Compares the reference with published factors, and shows how far graded meshes deviate from it.
 fn references(progress: &Progress) -> Result<Vec<Outcome>> {
     let centre = |length: f64| {
         let share = 2.0 * length / WIDTH;
@@ -253,38 +272,48 @@ fn references(progress: &Progress) -> Result<Vec<Outcome>> {
     };
     let specimens = [
         Specimen::CENTRE,
-        Specimen::Edge {
-            length: 0.25 * WIDTH,
-        },
-        Specimen::Edge {
-            length: 0.5 * WIDTH,
-        },
+        EDGES[0],
+        EDGES[1],
         Specimen::Strip,
+        Specimen::Cantilever,
     ];
-    parallel::each(&specimens, progress, |&specimen| {
+    let found = parallel::each(&specimens, progress, |&specimen| {
         let length = specimen.length();
-        let published = |shape: f64| shape * (PI * length).sqrt() / WIDTH;
-        let free = || {
-            let intensity = Intensity::with_free_ends(specimen, 0.3, progress)?;
-            anyhow::Ok(intensity.at(length))
+        let name = specimen.name();
+        let intensity = Intensity::of(specimen, POISSON, progress)?.at(length);
+        let published = |shape: f64| -> Result<Option<f64>> {
+            let published = shape * (PI * length).sqrt() / WIDTH;
+            let free = Intensity::with_free_ends(specimen, progress)?;
+            Ok(Some(free.at(length) / published))
         };
         let ratio = match specimen {
             Specimen::Strip => {
-                // Energy per length of the strip, ½ (λ + 2 µ) / height, at an opening of 1 m.
-                let setting = Setting::new(128, 0.3);
+                // Energy per area of the strip, ½ (λ + 2 µ) / height, at an opening of 1 m.
+                let setting = Setting {
+                    grading: Grading::Uniform,
+                    ..Setting::new(128, POISSON)
+                };
                 let elasticity = setting.elasticity();
-                let height = 0.375;
                 let modulus = elasticity.lame() + 2.0 * elasticity.shear_modulus();
-                let release = 0.5 * modulus / height;
-                let plate = Plate::<Dim2>::new(specimen, setting)?;
-                let load = plate.stretched(progress)?.stiffness;
-                let intensity = Intensity::of(specimen, 0.3, progress)?.at(length) * load;
-                intensity / (release * plane_strain(elasticity)).sqrt()
+                let release = 0.5 * modulus / Specimen::STRIP_HEIGHT;
+                let load = Plate::<Dim2>::new(specimen, setting)?.stretched(progress)?;
+                Some(intensity * load.stiffness / (release * plane_strain(elasticity)).sqrt())
             }
-            Specimen::Centre { .. } => free()? / published(centre(length)),
-            _ => free()? / published(edge(length)),
+            Specimen::Centre { .. } => published(centre(length))?,
+            Specimen::Edge { .. } => published(edge(length))?,
+            _ => None,
         };
-        let row = format!("lefm reference, {}, K / published", specimen.name());
-        Ok(Outcome::within(row, ratio, 1.0 - REFERENCE..=1.0 + REFERENCE))
-    })
+        let mut rows = Vec::new();
+        if let Some(ratio) = ratio {
+            let row = format!("lefm reference, {name}, K / published");
+            rows.push(Outcome::within(row, ratio, around_one(REFERENCE)));
+        }
+        for voxels in [32, 64, 128] {
+            let graded = Intensity::on_graded_mesh(specimen, voxels, progress)?;
+            let row = format!("lefm reference, {name}, graded n = {voxels}, K of load / uniform");
+            rows.push(Outcome::shown(row, graded.at(length) / intensity));
+        }
+        Ok(rows)
+    })?;
+    Ok(found.concat())
 }

@@ -3,6 +3,7 @@
 mod bar;
 mod beam;
 mod bounce;
+mod crack_path;
 mod damping;
 mod doughnut;
 mod elastica;

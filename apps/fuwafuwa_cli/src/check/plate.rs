@@ -13,17 +13,18 @@
 //! stress intensity K follows from the measured load F per depth: K = k F, with k = √(E' / 2 · dC/dA) [Irwin 1957].
 //! The compliance C at two crack lengths comes from the static solver on a fine lattice that is not turned.
 
-use super::bar::plane_strain;
+use super::bar::{POISSON, plane_strain};
 use super::statics::Statics;
 use crate::report::Progress;
 use anyhow::{Result, ensure};
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::inspect::{Elasticity, voxel_around};
 use fuwafuwa::{
-    Blade, Damping, Dim, Dim2, Dim3, DimVector, Event, Material, NodeId, Point, Rotation, SoftBody,
+    Blade, Damping, Dim, Dim2, Dim3, DimVector, Event, Grading, Law, Material, NodeId, Point, Rotation, SoftBody,
     StiffBodies, Vec3, VoxelGrid, World, WorldConfig,
 };
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 
 /// Width [m] to which the number of voxels across a plate refers.
 pub const WIDTH: f64 = 0.5;
@@ -61,6 +62,9 @@ impl Specimen {
         angle: 0.0,
     };
 
+    /// Height of [`Specimen::Strip`] between its grips [m].
+    pub const STRIP_HEIGHT: f64 = 0.375;
+
     /// Name in the table.
     pub fn name(self) -> String {
         match self {
@@ -78,7 +82,7 @@ impl Specimen {
         match self {
             Self::Centre { .. } | Self::Edge { .. } => [WIDTH, 1.0],
             Self::Cantilever => [0.75, 0.75],
-            Self::Strip => [1.5, 0.625],
+            Self::Strip => [1.5, Self::STRIP_HEIGHT + 2.0 * GRIP],
             Self::Slot { .. } => [1.0, 2.0],
         }
     }
@@ -171,6 +175,8 @@ pub struct Setting {
     pub growth: f64,
     /// Mass damping [1/s].
     pub damping: f32,
+    /// Grading of the elements.
+    pub grading: Grading,
 }
 
 impl Setting {
@@ -184,6 +190,7 @@ impl Setting {
             thickness: 0.0,
             growth: 0.0,
             damping: 0.0,
+            grading: Grading::Graded,
         }
     }
 
@@ -275,7 +282,7 @@ impl<D: PlateDim> Plate<D> {
         let mut plate = Self {
             specimen,
             setting,
-            body: SoftBody::new(grid, &[material])?,
+            body: SoftBody::with_options(grid, &[material], Law::default(), setting.grading)?,
             frame,
             length: specimen.length(),
             thickness: if D::N == 3 {
@@ -381,6 +388,11 @@ impl<D: PlateDim> Plate<D> {
         Ok(Stretched { moved, stiffness })
     }
 
+    /// Returns the compliance per depth under grips [1/Pa].
+    fn compliance(&self, progress: &Progress) -> Result<f64> {
+        Ok(1.0 / self.stretched(progress)?.stiffness)
+    }
+
     /// Returns the compliance per depth under a uniform tension of the ends, which can turn freely [1/Pa].
     fn free_compliance(&self, progress: &Progress) -> Result<f64> {
         let mesh = self.body.mesh();
@@ -445,60 +457,88 @@ pub struct Stretched {
     pub stiffness: f64,
 }
 
-/// Stress intensity per load per depth of a specimen [1/√m], as a function of its crack length.
+/// Compliance per depth of a specimen as a function of its crack length, for the stress intensity of its load.
 #[derive(Copy, Clone, Debug)]
 pub struct Intensity {
-    lengths: [f64; 3],
-    factors: [f64; 3],
+    /// Crack lengths [m], and compliances there [1/Pa].
+    points: [(f64, f64); 4],
+    /// E' / 2 over the number of crack tips [Pa].
+    factor: f64,
 }
 
-/// Voxels across 0.5 m of the two lattices from which an [`Intensity`] is extrapolated to the continuum.
+/// Voxels across 0.5 m of the two lattices from which a compliance is extrapolated to the continuum.
 const FINE: [usize; 2] = [64, 128];
-/// Change of the crack length between two values of an [`Intensity`] [m].
-const GROWTH: f64 = 8.0 * WIDTH / FINE[0] as f64 / 2.0;
+/// Change of the crack length between two points of an [`Intensity`] [m].
+const GROWTH: f64 = 2.0 * WIDTH / 32.0;
 
 impl Intensity {
-    /// Computes the stress intensity from the energy release of a growing crack.
+    /// Computes the compliance under grips, on fine uniform meshes.
     pub fn of(specimen: Specimen, poisson: f64, progress: &Progress) -> Result<Self> {
-        Self::from_compliance(specimen, poisson, |plate| {
-            Ok(1.0 / plate.stretched(progress)?.stiffness)
-        })
+        let [coarse, fine] = FINE.map(|voxels| {
+            let setting = Setting {
+                grading: Grading::Uniform,
+                ..Setting::new(voxels, poisson)
+            };
+            Self::on(specimen, setting, |plate| plate.compliance(progress))
+        });
+        Ok(coarse?.refined(&fine?))
+    }
+
+    /// Computes the compliance on the mesh that the engine uses for so many voxels across 0.5 m.
+    pub fn on_graded_mesh(specimen: Specimen, voxels: usize, progress: &Progress) -> Result<Self> {
+        let setting = Setting::new(voxels, POISSON);
+        Self::on(specimen, setting, |plate| plate.compliance(progress))
     }
 
     /// As [`Intensity::of`], for ends without grips under uniform tension.
-    pub fn with_free_ends(specimen: Specimen, poisson: f64, progress: &Progress) -> Result<Self> {
-        Self::from_compliance(specimen, poisson, |plate| plate.free_compliance(progress))
+    pub fn with_free_ends(specimen: Specimen, progress: &Progress) -> Result<Self> {
+        let [coarse, fine] = FINE.map(|voxels| {
+            let setting = Setting {
+                grading: Grading::Uniform,
+                ..Setting::new(voxels, POISSON)
+            };
+            Self::on(specimen, setting, |plate| plate.free_compliance(progress))
+        });
+        Ok(coarse?.refined(&fine?))
     }
 
-    fn from_compliance(
+    fn on(
         specimen: Specimen,
-        poisson: f64,
+        mut setting: Setting,
         compliance: impl Fn(&Plate<Dim2>) -> Result<f64>,
     ) -> Result<Self> {
-        let lengths = [-1.0, 0.0, 1.0].map(|steps| specimen.length() + steps * GROWTH);
-        let factors = |voxels: usize| -> Result<[f64; 3]> {
-            let mut setting = Setting::new(voxels, poisson);
-            let mut values = [0.0; 4];
-            for (value, steps) in values.iter_mut().zip([-1.5, -0.5, 0.5, 1.5]) {
-                setting.growth = steps * GROWTH;
-                *value = compliance(&Plate::new(specimen, setting)?)?;
-            }
-            let area = specimen.tips() as f64 * GROWTH;
-            let half = 0.5 * plane_strain(setting.elasticity());
-            Ok([0, 1, 2].map(|k| (half * (values[k + 1] - values[k]) / area).sqrt()))
-        };
-        let [coarse, fine] = [factors(FINE[0])?, factors(FINE[1])?];
-        // The error is proportional to the width of a voxel.
-        let factors = [0, 1, 2].map(|k| 2.0 * fine[k] - coarse[k]);
-        Ok(Self { lengths, factors })
+        let mut points = [(0.0, 0.0); 4];
+        for (point, steps) in points.iter_mut().zip([-1.5, -0.5, 0.5, 1.5]) {
+            setting.growth = steps * GROWTH;
+            let plate = Plate::new(specimen, setting)?;
+            *point = (plate.length, compliance(&plate)?);
+        }
+        let factor = 0.5 * plane_strain(setting.elasticity()) / specimen.tips() as f64;
+        Ok(Self { points, factor })
     }
 
-    /// Returns the stress intensity per load per depth at a crack length [1/√m], by quadratic interpolation.
+    /// Extrapolates from this lattice and one with voxels of half the size. The error of a compliance is proportional to
+    /// the size of the voxels.
+    fn refined(mut self, fine: &Self) -> Self {
+        for (point, fine) in self.points.iter_mut().zip(&fine.points) {
+            point.1 = 2.0 * fine.1 - point.1;
+        }
+        self
+    }
+
+    /// Returns the stress intensity per load per depth at a crack length [1/√m]. The compliance is a cubic polynomial
+    /// through its points.
     pub fn at(&self, length: f64) -> f64 {
-        let [a, b, c] = self.lengths;
-        let share = |at: f64, p: f64, q: f64| (length - p) * (length - q) / ((at - p) * (at - q));
-        let shares = [share(a, b, c), share(b, a, c), share(c, a, b)];
-        shares.iter().zip(self.factors).map(|(share, k)| share * k).sum()
+        let mut slope = 0.0;
+        for (j, &(here, compliance)) in self.points.iter().enumerate() {
+            let others = || (0..4).filter(move |&k| k != j);
+            for i in others() {
+                let rest = others().filter(|&k| k != i).map(|k| self.points[k].0);
+                let product: f64 = rest.map(|at| (length - at) / (here - at)).product();
+                slope += compliance * product / (here - self.points[i].0);
+            }
+        }
+        (self.factor * slope).sqrt()
     }
 }
 
@@ -670,4 +710,11 @@ impl<D: PlateDim> Plate<D> {
         }
         Ok(course)
     }
+}
+
+/// Returns the range of ratios that differ from 1 by at most a bound.
+pub fn around_one(bound: f64) -> RangeInclusive<f64> {
+    // Rounded, so that the table shows few digits.
+    let round = |value: f64| (1e6 * value).round() / 1e6;
+    round(1.0 - bound)..=round(1.0 + bound)
 }
