@@ -1,4 +1,272 @@
+//! Bars without a crack: the load at the first split must not depend on the size of the voxels or on the depth of the
+//! grips.
+//!
+//! - Whole bars under uniform stress fail at strength × area. Poisson's ratio is 0, since grips that hold the sides of
+//!   other materials raise the stress in their corners without limit.
+//! - Bars with a blunt slot fail when the mean stress over a distance of 2/π (toughness / strength)² before the root of
+//!   the slot reaches the strength, by the line method of the theory of critical distances [Taylor 1999]. That
+//!   distance makes the line method agree with the toughness for a crack and with the strength for a whole bar. The
+//!   stress is that of a static solution on a uniform mesh; that of Creager and Paris (1967), from the stress intensity
+//!   of a crack as deep as the slot, is shown for comparison.
+//!
+//! ```text
+//!   ▓▓▓▓▓▓▓▓▓▓▓      ▓▓▓▓▓▓▓▓▓▓▓  grip
+//!   ░░░░░░░░░░░      ░░░░░░░░░░░
+//!   ░░░░░░░░░░░          ╮░░░░░░  slot, 0.3 m deep, ends in a half circle
+//!   ░░░░░░░░░░░      ░░░░░░░░░░░
+//!   ▓▓▓▓▓▓▓▓▓▓▓      ▓▓▓▓▓▓▓▓▓▓▓
+//! ```
+
 use super::Extent;
-use crate::report::{Findings, Progress};
-use anyhow::Result;
-pub fn check(_: &Progress, _: Extent) -> Result<Findings> { Ok(Findings::default()) }
+use super::parallel;
+use super::plate::{Intensity, Plate, PlateDim, Pull, Setting, Specimen, TOUGHNESS, around_one};
+use crate::plot::{Plot, Points};
+use crate::report::{Findings, Outcome, Progress};
+use anyhow::{Context, Result, bail};
+use fuwafuwa::{
+    Damping, Dim, Dim2, Dim3, DimVector, Elasticity, Grading, Material, SoftBody, StiffBodies,
+    VoxelGrid, World, WorldConfig,
+};
+use std::f64::consts::PI;
+
+/// Maximum relative deviation of the load of whole bars and of bars with a slot.
+const TOLERANCES: [f64; 2] = [0.03, 0.07];
+/// Maximum relative difference of the reference from that of a coarser mesh.
+const CONVERGED: f64 = 0.03;
+/// Strength of whole bars [Pa]; their strain at failure is 2 %.
+const STRENGTH: f32 = 100.0;
+/// Length of whole bars [m].
+const LENGTH: f64 = 1.5;
+/// Initial load of whole bars, relative to the expected one.
+const START: f64 = 0.88;
+/// Load at which a whole bar counts as unbreakable, relative to the expected one.
+const MOST: f64 = 1.4;
+/// Growth of the load of whole bars [1/s], relative to the expected one.
+const RATE: f64 = 0.05;
+/// Depths of the grips of whole bars [m].
+const DEPTHS: [f64; 2] = [0.0, 0.1];
+/// Bar with a slot.
+const SLOT: Specimen = Specimen::Slot {
+    depth: 0.3,
+    radius: RADIUS,
+};
+/// Radius of the end of the slot [m].
+const RADIUS: f64 = 0.0625;
+/// Strength of bars with a slot [Pa].
+const SLOT_STRENGTH: f64 = 5.0 * TOUGHNESS;
+/// Thickness of bars with a slot in 3D [m].
+const THICKNESS: f64 = 0.25;
+
+/// Compares the loads of bars.
+pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
+    let (flat, solid): (&[usize], &[usize]) = match extent {
+        Extent::Usual => (&[16, 32, 64, 128], &[16]),
+        Extent::Full => (&[16, 32, 64, 128, 256], &[16, 32]),
+    };
+    let of = |dim: usize, numbers: &[usize]| -> Vec<(usize, usize)> {
+        numbers.iter().map(|&voxels| (dim, voxels)).collect()
+    };
+    let sizes = [of(2, flat), of(3, solid)].concat();
+    let mut series: Vec<Points> = Vec::new();
+    let mut outcomes = whole_bars(&sizes, &mut series, progress)?;
+    outcomes.extend(slots(&sizes, &mut series, progress)?);
+    let plot = Plot {
+        x: "voxels across the bar".into(),
+        y: "load at the first split / reference".into(),
+        points: series,
+        band: Some(around_one(TOLERANCES[0])),
+        is_log: [true, false],
+        ..Plot::default()
+    };
+    Ok(Findings {
+        outcomes,
+        plots: vec![plot],
+    })
+}
+
+/// Compares the loads of whole bars with strength × area.
+fn whole_bars(
+    sizes: &[(usize, usize)],
+    series: &mut Vec<Points>,
+    progress: &Progress,
+) -> Result<Vec<Outcome>> {
+    let cases: Vec<(f64, usize, usize)> = { DEPTHS.into_iter() }
+        .flat_map(|depth| sizes.iter().map(move |&(dim, voxels)| (depth, dim, voxels)))
+        .collect();
+    let loads = parallel::each(&cases, progress, |&(depth, dim, voxels)| match dim {
+        2 => whole_load::<Dim2>(voxels, depth),
+        _ => whole_load::<Dim3>(voxels, depth),
+    })?;
+    let mut outcomes = Vec::new();
+    for (&(depth, dim, voxels), load) in cases.iter().zip(loads) {
+        let name = format!("{dim}D, whole, grips of {depth} m");
+        let row = format!("grid {name}, n = {voxels}, load / (strength × area)");
+        outcomes.push(Outcome::within(row, load, around_one(TOLERANCES[0])));
+        add_point(series, name, (voxels as f64, load));
+    }
+    Ok(outcomes)
+}
+
+/// Pulls at a bar 1 m wide until the first node splits. Returns the load before that, relative to strength × area.
+/// NaN if no node splits.
+fn whole_load<D: Dim>(voxels: usize, depth: f64) -> Result<f64> {
+    let length = (LENGTH * voxels as f64).round() as usize;
+    let size = [length, voxels, D::depth(voxels)];
+    let grid = VoxelGrid::<D>::from_fn(size, 1.0 / voxels as f32, |_| 1)?;
+    let material = Material {
+        elasticity: Elasticity {
+            poisson: 0.0,
+            ..Material::default().elasticity
+        },
+        strength: STRENGTH,
+        toughness: 0.2 * STRENGTH,
+        damping: Damping {
+            mass: 0.0,
+            ..Damping::default()
+        },
+        ..Material::default()
+    };
+    let mut body = SoftBody::new(grid, &[material])?;
+    let inner = (depth * voxels as f64 + 1e-6).floor();
+    let free = length as f64 - 2.0 * inner;
+    // Displacement of a node at the expected load [m].
+    let strain = f64::from(STRENGTH) / material.elasticity.young;
+    let stretch = |place: f64| {
+        let share = (place - inner).clamp(0.0, free) - 0.5 * free;
+        share / voxels as f64 * strain
+    };
+    let nodes: Vec<_> = body.mesh().nodes().collect();
+    let mut left = Vec::new();
+    for &(id, node) in &nodes {
+        let place = f64::from(node.at[0]);
+        let (mut at, ..) = body.node_state(id);
+        let by = stretch(place);
+        at[0] += (START * by) as f32;
+        body.set_node_state(id, at, D::Vector::X * (RATE * by) as f32)?;
+        if place <= inner || place >= length as f64 - inner {
+            body.fix_node(id);
+        }
+        if place <= inner {
+            left.push(id);
+        }
+    }
+    let mut world = World::<D>::new(WorldConfig {
+        gravity: D::Vector::ZERO,
+        stiff_bodies: StiffBodies::Exact,
+        sleep: false,
+        ..WorldConfig::default()
+    })?;
+    let tick = f64::from(world.config().tick);
+    let bar = world.add_soft_body(body)?;
+    let mut last = f64::NAN;
+    for _ in 0..((MOST - START) / RATE / tick) as usize {
+        let split = world.step().nodes_split;
+        let forces = left.iter().map(|&id| f64::from(world[bar].force_on(id)[0]));
+        let load = forces.sum::<f64>() / f64::from(STRENGTH);
+        if split > 0 {
+            return Ok(if last.is_nan() { load } else { last });
+        }
+        last = load;
+    }
+    Ok(f64::NAN)
+}
+
+/// Compares the loads of bars with a slot with the line method and with that of the finest bar.
+fn slots(
+    sizes: &[(usize, usize)],
+    series: &mut Vec<Points>,
+    progress: &Progress,
+) -> Result<Vec<Outcome>> {
+    // Poisson's ratio is 0, so that plates in 3D are in plane strain, too.
+    let [coarse, fine] = [32, 64].map(|voxels| line_method(voxels, progress));
+    let (coarse, reference) = (coarse?, fine?);
+    let row = "grid reference, slot, load of the line method, coarser mesh / finer mesh";
+    let mut outcomes = vec![Outcome::within(
+        row.into(),
+        coarse / reference,
+        around_one(CONVERGED),
+    )];
+    let row = "grid reference, slot, load by Creager and Paris / by static solution";
+    outcomes.push(Outcome::shown(row.into(), creager_paris(progress)? / reference));
+    let loads = parallel::each(sizes, progress, |&(dim, voxels)| match dim {
+        2 => slot_load::<Dim2>(voxels, reference, progress),
+        _ => slot_load::<Dim3>(voxels, reference, progress),
+    })?;
+    for (&(dim, voxels), load) in sizes.iter().zip(&loads) {
+        let name = format!("{dim}D, slot");
+        let row = format!("grid {name}, n = {voxels}, load / line method");
+        outcomes.push(Outcome::within(
+            row,
+            load / reference,
+            around_one(TOLERANCES[1]),
+        ));
+        let finest = { sizes.iter().zip(&loads) }
+            .filter(|((other, _), _)| *other == dim)
+            .max_by_key(|((_, voxels), _)| *voxels);
+        let (&(_, most), finest) = finest.context("there is a finest bar")?;
+        if most > voxels {
+            let row = format!("grid {name}, n = {voxels}, load / that at n = {most}");
+            outcomes.push(Outcome::within(
+                row,
+                load / finest,
+                around_one(TOLERANCES[1]),
+            ));
+        }
+        add_point(series, name, (voxels as f64, load / reference));
+    }
+    Ok(outcomes)
+}
+
+/// Returns the distance over which the line method averages the stress [m].
+fn distance() -> f64 {
+    2.0 / PI * (TOUGHNESS / SLOT_STRENGTH).powi(2)
+}
+
+/// Returns the load per thickness at which a bar with a slot fails by the line method [N/m], from a static solution with
+/// so many voxels across 0.5 m.
+fn line_method(voxels: usize, progress: &Progress) -> Result<f64> {
+    let setting = Setting {
+        grading: Grading::Uniform,
+        ..Setting::new(voxels, 0.0)
+    };
+    let plate = Plate::<Dim2>::new(SLOT, setting)?;
+    let stretched = plate.stretched(progress)?;
+    let Specimen::Slot { depth, .. } = SLOT else {
+        bail!("the specimen has a slot");
+    };
+    let root = depth - 0.5 * SLOT.size()[0];
+    let tension = plate.mean_tension(&stretched, [root, root + distance()])?;
+    Ok(SLOT_STRENGTH * stretched.stiffness / tension)
+}
+
+/// Returns the load of [`line_method`] with the stress of Creager and Paris,
+/// σ(r) = K / √(2πr) (1 + ρ / 2r), where r is measured from half of the radius ρ behind the root.
+fn creager_paris(progress: &Progress) -> Result<f64> {
+    let Specimen::Slot { depth, .. } = SLOT else {
+        bail!("the specimen has a slot");
+    };
+    let crack = Specimen::WideEdge { length: depth };
+    let intensity = Intensity::of(crack, 0.0, progress)?.at(depth);
+    // The integral of the stress over r is K / √(2π) (2 √r − ρ / √r), which is 0 at the root.
+    let end = 0.5 * RADIUS + distance();
+    let integral = (2.0 * end.sqrt() - RADIUS / end.sqrt()) / (2.0 * PI).sqrt();
+    Ok(SLOT_STRENGTH * distance() / (intensity * integral))
+}
+
+/// Returns the load per thickness at which the first node of a bar with a slot splits [N/m].
+fn slot_load<D: PlateDim>(voxels: usize, expected: f64, progress: &Progress) -> Result<f64> {
+    let setting = Setting {
+        strength: SLOT_STRENGTH,
+        thickness: THICKNESS,
+        ..Setting::new(voxels / 2, 0.0)
+    };
+    let pull = Pull::slow(expected);
+    Ok(Plate::<D>::new(SLOT, setting)?.pull(&pull, progress)?.first)
+}
+
+fn add_point(series: &mut Vec<Points>, name: String, point: (f64, f64)) {
+    match series.iter_mut().find(|points| points.name == name) {
+        Some(points) => points.points.push(point),
+        None => series.push(Points::new(name, [point])),
+    }
+}

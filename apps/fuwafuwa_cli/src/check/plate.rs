@@ -50,6 +50,8 @@ pub enum Specimen {
     Cantilever,
     /// Strip between grips 0.375 m apart, 1.5 m long, with a crack of 0.5 m: K does not depend on the crack length.
     Strip,
+    /// Plate 1 m wide and 2 m high with a crack from its left edge. The grips do not turn.
+    WideEdge { length: f64 },
     /// Plate 1 m wide and 2 m high with a slot from its left edge to this depth [m]. The end of the slot is a half circle
     /// of this radius [m].
     Slot { depth: f64, radius: f64 },
@@ -71,6 +73,7 @@ impl Specimen {
             Self::Centre { angle: 0.0, .. } => "centre".into(),
             Self::Centre { angle, .. } => format!("oblique {angle}°"),
             Self::Edge { length } => format!("edge {}", length / WIDTH),
+            Self::WideEdge { length } => format!("wide edge {length}"),
             Self::Cantilever => "cantilever".into(),
             Self::Strip => "strip".into(),
             Self::Slot { .. } => "slot".into(),
@@ -83,7 +86,7 @@ impl Specimen {
             Self::Centre { .. } | Self::Edge { .. } => [WIDTH, 1.0],
             Self::Cantilever => [0.75, 0.75],
             Self::Strip => [1.5, Self::STRIP_HEIGHT + 2.0 * GRIP],
-            Self::Slot { .. } => [1.0, 2.0],
+            Self::WideEdge { .. } | Self::Slot { .. } => [1.0, 2.0],
         }
     }
 
@@ -98,7 +101,7 @@ impl Specimen {
                 let [x, y] = [cosine, sine].map(|share| share * (half + growth));
                 Some([[-x, -y], [x, y]])
             }
-            Self::Edge { length } => from_edge(length),
+            Self::Edge { length } | Self::WideEdge { length } => from_edge(length),
             Self::Cantilever => from_edge(0.3125),
             Self::Strip => from_edge(0.5),
             Self::Slot { .. } => None,
@@ -109,7 +112,7 @@ impl Specimen {
     pub fn length(self) -> f64 {
         match self {
             Self::Centre { half, .. } => half,
-            Self::Edge { length } => length,
+            Self::Edge { length } | Self::WideEdge { length } => length,
             Self::Cantilever => 0.3125,
             Self::Strip => 0.5,
             Self::Slot { depth, .. } => depth,
@@ -423,6 +426,38 @@ impl<D: PlateDim> Plate<D> {
     }
 }
 
+impl Plate<Dim2> {
+    /// Returns the mean tension along v on the line v = 0 between two places u [m], in a static solution of a uniform mesh
+    /// that is not turned [Pa at an opening of 1 m]. The tension is that of the elements on both sides of the line.
+    pub fn mean_tension(&self, stretched: &Stretched, range: [f64; 2]) -> Result<f64> {
+        let (mesh, voxel) = (self.body.mesh(), self.frame.voxel);
+        let elasticity = self.setting.elasticity();
+        let (lame, shear) = (elasticity.lame(), elasticity.shear_modulus());
+        let (mut sum, mut length) = (0.0, 0.0);
+        for (_, element) in mesh.elements() {
+            let [x, y, _] = mesh.first_voxel(element).map(f64::from);
+            let [u, v] = self.frame.plate(DVec3::new(x, y + 0.5, 0.0) * voxel);
+            let share = (u + voxel).min(range[1]) - u.max(range[0]);
+            if v.abs() > voxel || share <= 0.0 {
+                continue;
+            }
+            // Mean strain of the element, from the displacements of its four corners.
+            let mut strain = [0.0; 2];
+            for &id in &element.nodes {
+                let at = mesh.node(id).at;
+                for (axis, low) in [x, y].into_iter().enumerate() {
+                    let side = if f64::from(at[axis]) > low { 0.5 } else { -0.5 };
+                    strain[axis] += side * stretched.moved[2 * id.index() + axis] / voxel;
+                }
+            }
+            sum += share * (lame * (strain[0] + strain[1]) + 2.0 * shear * strain[1]);
+            length += share;
+        }
+        ensure!(length > 0.0, "no element lies along the line");
+        Ok(sum / length)
+    }
+}
+
 /// Returns whether the segment from one voxel centre to another crosses a crack, both given by their ends.
 fn crosses(crack: [DVec3; 2], centres: [DVec3; 2]) -> bool {
     let side = |[from, to]: [DVec3; 2], at: DVec3| (to - from).cross(at - from).z > 0.0;
@@ -467,7 +502,7 @@ pub struct Intensity {
 }
 
 /// Voxels across 0.5 m of the two lattices from which a compliance is extrapolated to the continuum.
-const FINE: [usize; 2] = [64, 128];
+const FINE: [usize; 2] = [32, 64];
 /// Change of the crack length between two points of an [`Intensity`] [m].
 const GROWTH: f64 = 2.0 * WIDTH / 32.0;
 
