@@ -12,7 +12,7 @@
 //! ```text
 //!   ▓▓▓▓▓▓▓▓▓▓▓      ▓▓▓▓▓▓▓▓▓▓▓  grip
 //!   ░░░░░░░░░░░      ░░░░░░░░░░░
-//!   ░░░░░░░░░░░          ╮░░░░░░  slot, 0.3 m deep, ends in a half circle
+//!   ░░░░░░░░░░░          ╮░░░░░░  slot, 0.31 m deep, ends in a half circle
 //!   ░░░░░░░░░░░      ░░░░░░░░░░░
 //!   ▓▓▓▓▓▓▓▓▓▓▓      ▓▓▓▓▓▓▓▓▓▓▓
 //! ```
@@ -47,7 +47,7 @@ const RATE: f64 = 0.05;
 const DEPTHS: [f64; 2] = [0.0, 0.1];
 /// Bar with a slot.
 const SLOT: Specimen = Specimen::Slot {
-    depth: 0.3,
+    depth: 0.3125,
     radius: RADIUS,
 };
 /// Radius of the end of the slot [m].
@@ -60,7 +60,7 @@ const THICKNESS: f64 = 0.25;
 /// Compares the loads of bars.
 pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
     let (flat, solid): (&[usize], &[usize]) = match extent {
-        Extent::Usual => (&[16, 32, 64, 128], &[16]),
+        Extent::Usual => (&[16, 32, 64, 128, 256], &[16]),
         Extent::Full => (&[16, 32, 64, 128, 256], &[16, 32]),
     };
     let of = |dim: usize, numbers: &[usize]| -> Vec<(usize, usize)> {

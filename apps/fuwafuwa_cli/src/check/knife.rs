@@ -152,7 +152,8 @@ fn cut<D: Dim>(case: &Case) -> Result<Spent> {
     let top = HEIGHT + 0.02;
     let holder = RigidBody::kinematic(Shape::ball(0.01)).at(tip(top));
     let holder = world.add_rigid_body(holder.with_sensor(true))?;
-    let reach = 0.5 * thickness + voxel;
+    // Ends beside the bar put the samples of the edge, half a voxel apart, evenly into the bar.
+    let reach = 0.5 * thickness + 0.75 * voxel;
     let edge = [vector(0.0, 0.0, -reach), vector(0.0, 0.0, reach)];
     let knife = world.add_knife(Knife {
         radius: if case.is_dull { RADIUS } else { 0.0 },

@@ -146,6 +146,7 @@ fn wings(case: &Case, progress: &Progress) -> Result<[f64; 2]> {
     };
     let mut pull = Pull {
         until_first: false,
+        start: 0.5,
         rate: RATE,
         most: 2.5,
         ..Pull::slow(TOUGHNESS * WIDTH / (PI * HALF).sqrt())

@@ -599,13 +599,13 @@ pub struct Pull {
 }
 
 impl Pull {
-    /// Returns a slow pull that stops at the first split. It starts at half of the expected load.
+    /// Returns a slow pull that stops at the first split. It starts at 0.65 of the expected load.
     pub fn slow(expected: f64) -> Self {
         Self {
             expected,
-            start: 0.5,
-            rate: 0.1,
-            most: 1.5,
+            start: 0.65,
+            rate: 0.075,
+            most: 1.4,
             orientation: Rotation::NONE,
             spin: 0.0,
             until_first: true,
