@@ -4,3 +4,6 @@ pub mod blade;
 pub mod breakable_nodes;
 pub mod crack_growth;
 pub mod knife;
+pub mod nodal_tension;
+pub mod near_field;
+pub mod tip_deviations;

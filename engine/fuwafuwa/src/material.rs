@@ -33,6 +33,10 @@ pub struct Material {
     /// Tensile strength of a smooth surface [Pa]: the tension at which a crack starts; infinite = never
     /// tears. A player can tear a body with a strength of a fifth of Young's modulus by hand.
     pub strength: f32,
+    /// Scatter of the strength, 0 to 10, default 0.4: at each lattice point of a smooth surface, the strength is
+    /// raised by a fixed pseudo-random part, at most by this factor. With 0, a row of equally loaded points fails
+    /// at once.
+    pub strength_scatter: f32,
     /// Fracture toughness [Pa √m]; default 200. A crack grows if the tension at its tip exceeds toughness /
     /// √voxel size.
     ///
@@ -57,7 +61,8 @@ pub struct Material {
 
 hash_state! {
     struct Material {
-        elasticity, density, damping, friction, rolling_resistance, strength, toughness, yield_strain, plastic_limit,
+        elasticity, density, damping, friction, rolling_resistance, strength,
+        strength_scatter, toughness, yield_strain, plastic_limit,
     }
 }
 
@@ -76,6 +81,7 @@ impl Default for Material {
             friction: 0.4,
             rolling_resistance: 20.0,
             strength: 1000.0,
+            strength_scatter: 0.4,
             toughness: 200.0,
             yield_strain: f32::INFINITY,
             plastic_limit: 2.0,
@@ -102,6 +108,7 @@ impl Material {
         within("rolling_resistance", rolling, 0.0, 1000.0, "0 to 1000")?;
         let infinite = f32::INFINITY;
         within("strength", self.strength, tiny, infinite, "positive")?;
+        within("strength_scatter", self.strength_scatter, 0.0, 10.0, "0 to 10")?;
         within("toughness", self.toughness, tiny, infinite, "positive")?;
         within(
             "yield_strain",

@@ -18,11 +18,6 @@ use crate::topology::mesh::{Mesh, Node};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Largest random increase of the strength at a smooth surface, relative to the strength. Without this
-/// scatter, a row of equally loaded nodes would fail all at once. A crack tip is a single node and needs no
-/// scatter.
-const SCATTER: f32 = 0.4;
-
 /// Node at which a crack can start or continue.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct BreakableNode {
@@ -33,7 +28,10 @@ pub struct BreakableNode {
     pub crumbs: u8,
     /// Number of the weakest material around the node; 1 is the first material of the body.
     pub material: u8,
-    /// Tension at which the node begins to take damage [Pa].
+    /// Whether the node is a crack tip: some voxels that share it are separated by an open face.
+    pub is_tip: bool,
+    /// Tension at which the node begins to take damage [Pa]: toughness / √voxel size at a crack tip, elsewhere the
+    /// strength with its scatter.
     pub threshold: f32,
     /// Index of the node's list of cuts in the list of all patterns of closed faces.
     cuts: u32,
@@ -51,6 +49,9 @@ pub struct NodeCut {
     pub faces: u8,
     /// Mask of the octants whose voxel would be alone on its side of the cut.
     pub single_voxel_octants: u8,
+    /// Step by which the cut advances a crack, in lattice units: the mean direction from the node to the opened
+    /// faces, (1, 0, 0) if these lie beyond the node along x. Zero if faces on both sides open.
+    pub advance: [f32; 3],
 }
 
 /// For each axis, mask of the octants on the near side of a closed face normal to that axis.
@@ -72,6 +73,12 @@ impl BreakableNodes {
         let first = ids.start.min(end);
         let all = self.of_node.as_slice()[first..end].iter().zip(first..);
         all.filter_map(|(node, id)| Some((NodeId::of(id), node.as_ref()?)))
+    }
+
+    /// Returns whether a node is a crack tip.
+    pub fn is_tip(&self, id: NodeId) -> bool {
+        let node = self.of_node.get(id.index());
+        node.is_some_and(|node| node.is_some_and(|node| node.is_tip))
     }
 
     /// Returns all possible cuts at a breakable node.
@@ -131,7 +138,7 @@ impl BreakableNodes {
         let threshold = if is_tip {
             weakest.toughness / grid.voxel_size().sqrt()
         } else {
-            weakest.strength * (1.0 + SCATTER * chance(at))
+            weakest.strength * (1.0 + weakest.strength_scatter * chance(at))
         };
         let cuts = self.pattern::<D>(closed, group);
         let lone = self.cuts[cuts as usize]
@@ -145,6 +152,7 @@ impl BreakableNodes {
             group,
             crumbs,
             material,
+            is_tip,
             threshold,
             cuts,
         }
@@ -179,9 +187,21 @@ fn cuts<D: Dim>(closed: Closed, group: u8) -> impl Iterator<Item = NodeCut> {
                 side,
                 faces: opened.count_ones() as u8,
                 single_voxel_octants: alone(side) | alone(group & !side),
+                advance: advance::<D>(axis, opened),
             })
         })
     })
+}
+
+/// Returns the mean direction from a node to the faces across `axis` of some near octants, in lattice units.
+fn advance<D: Dim>(axis: usize, opened: u8) -> [f32; 3] {
+    let mut sum = [0.0; 3];
+    for octant in (0..D::CORNERS).filter(|octant| opened >> octant & 1 == 1) {
+        for other in (0..D::N).filter(|&other| other != axis) {
+            sum[other] += if octant >> other & 1 == 1 { 1.0 } else { -1.0 };
+        }
+    }
+    sum.map(|k| k / opened.count_ones() as f32)
 }
 
 /// Returns the mask of the octants that `choice` selects. Each ternary digit of `choice` stands for one axis

@@ -1,28 +1,36 @@
-//! Fracture: selects the shared nodes that are released next.
+//! Crack growth: selects the shared nodes that are released next.
 //!
-//! A cut through a breakable node divides the voxels that share the node into sides A and B. The elements of
-//! side A pull at the node with the force F_A, those of side B with F_B:
+//! A crack grows at a *tip* if the energy-release vector J of [`near_field`](super::near_field) exceeds what
+//! the toughness K withstands in plane strain, and it grows along J:
 //!
 //! ```text
-//!       A │ B        T = (F_B − F_A) / 2      n = mean rotation · axis
-//!     ────●────      σ = √(Tₙ² + ¼ Tₛ²) / area of the opened faces, both sides pulling apart
-//!       A │ B
+//! |J| > K² (1 − ν²) / Y
 //! ```
 //!
-//! T is the pull across the cut, with the part Tₙ along the normal n of the cut and the part Tₛ in its plane.
-//! The tension σ is compared with a threshold: the strength at a smooth surface, toughness / √voxel at the
-//! tip of a crack. A node fails if it is overloaded for some milliseconds.
+//! Each tip remembers its deviation from the path that J asks for, and takes the cut that reduces the
+//! deviation most. A crack *starts* at a smooth surface if the mean tension within the radius
+//! (2/π) (K/σ)² exceeds the strength σ [Taylor 2007]. At that radius, strength and toughness agree: a sharp
+//! notch and a crack fail at the same load. In both cases, the nodal tension of
+//! [`nodal_tension`](super::nodal_tension) must pull the cut open. Under [`Law::Endo2004`], the nodal tension
+//! alone decides, as in the paper.
+//!
+//! A node fails if it is overloaded for some milliseconds.
 
-use crate::foundation::dim::{Dim, Point};
+use crate::foundation::dim::{Dim, Point, points_in};
 use crate::foundation::ids::NodeId;
 use crate::foundation::threads;
 use crate::fracture::breakable_nodes::{BreakableNode, NodeCut};
+use crate::fracture::near_field::{Front, NearField, outer_radius};
+use crate::fracture::nodal_tension::{
+    CutTension, NodalForces, crumb_factor, face_area, is_surely_below,
+};
+use crate::material::Material;
 use crate::math::lanes::on_widest_lanes;
 use crate::soft_body::SoftBody;
 use crate::soft_body::cooldowns::is_near;
-use crate::soft_body::element_forces::Row;
-use fearless_simd::Simd;
+use crate::soft_body::element_law::Law;
 use glam::Vec3;
+use std::f32::consts::{FRAC_2_PI, SQRT_2};
 
 /// Node that fails, so that its release advances a crack.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -35,11 +43,23 @@ pub struct Failure {
     pub side: u8,
     /// Axis normal to the faces that open.
     axis: usize,
-    /// Tension divided by the threshold of the node.
+    /// Load divided by the load at which the node begins to take damage.
     pub excess: f32,
-    /// Estimate of the released elastic energy [J]: σ² / (2 Y) times the volume of a voxel, with the tension
-    /// σ and Young's modulus Y.
+    /// Estimate of the released elastic energy [J].
     pub energy: f32,
+    /// Advance of a crack tip; `None` at a smooth surface.
+    advance: Option<Advance>,
+}
+
+/// Advance of a crack tip by one cut.
+#[derive(Copy, Clone, Debug, PartialEq)]
+struct Advance {
+    /// Lattice point of the tip after the cut.
+    to: Point,
+    /// Unit vector in the direction of growth, along the axes of the undeformed body.
+    direction: Vec3,
+    /// Deviation from the ideal path after the cut [voxels].
+    deviation: Vec3,
 }
 
 /// Time until a node fails under 1.5 times its threshold tension [s]. With a shorter time, impacts shatter
@@ -48,15 +68,36 @@ const DAMAGE_TIME: f32 = 0.004;
 /// Time in which a damaged node heals once it is no longer overloaded [s]. It is longer than [`DAMAGE_TIME`],
 /// so that oscillating loads can break nodes too.
 const HEALING_TIME: f32 = 4.0 * DAMAGE_TIME;
-/// Upper limit of the overload, tension / threshold − 1, in the growth of damage. Because of this limit, a
-/// short impact does less damage than a sustained pull.
+/// Upper limit of the overload, load / threshold − 1, in the growth of damage. Because of this limit, a short
+/// impact does less damage than a sustained pull.
 const MAX_OVERLOAD: f32 = 3.0;
-/// Factor on the threshold of cuts that would make a crumb or leave a voxel attached by a single face.
-/// Without it, cracks leave a trail of crumbs.
-const CRUMB_FACTOR: f32 = 1.3;
+/// Lower limit of the overload of a crack tip in the growth of damage. Without it, a slowly loaded crack would
+/// grow only at 1.1 times its toughness, because damage takes time.
+const MIN_TIP_OVERLOAD: f32 = 0.25;
 /// Cooldown after a release, as the distance that the fastest pressure wave travels in this time [voxels]. It
 /// lasts until the wave of the release has reached nodes two voxels away and returned.
 const COOLDOWN_VOXELS: f64 = 4.0;
+/// Nodal tension, divided by the threshold, below which the load near a node is not computed. At a tip whose
+/// load equals the toughness, the nodal tension is 0.9 to 1.5 times its threshold.
+const GATE: f32 = 0.6;
+/// Largest load of a tip relative to its nodal tension. It excludes tips that are pressed or sheared: the
+/// energy-release vector counts the energy that a crack would release if its faces did not touch.
+const MAX_CLOSED_SHARE: f32 = 1.2;
+/// Stress intensity at a tip divided by its estimate from |J|, which counts the crack as a little longer than
+/// it is. Measured by `fuwafuwa check lefm`.
+const TIP_FACTOR: [f32; 2] = [0.97, 1.05];
+/// Smallest and largest radius of the mean tension at a surface [voxels]; the largest in 2D and in 3D. Within
+/// less than a voxel there are too few elements, and with the radius the cost grows.
+const MIN_RADIUS: f32 = 1.0;
+const MAX_RADIUS: [f32; 2] = [8.0, 4.0];
+/// Exponent of the extrapolation of the mean tension to radii below [`MIN_RADIUS`], relative to the slope
+/// between the means within one and two voxels. Elements smooth the stress of a notch, so the slope between
+/// the means is too small.
+const STEEPENING: f32 = 1.4;
+/// Least advance of a cut in the direction of growth [voxels].
+const MIN_ADVANCE: f32 = 0.1;
+/// Least cosine of the angle between two directions of growth that belong to one crack front.
+const ALIKE: f32 = 0.8;
 
 /// Updates the damage of all breakable nodes after a fracture round of `duration` [s], and returns the nodes
 /// that fail now, the most overloaded first. No two of these nodes are near each other, except along the
@@ -68,8 +109,13 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
     }
     let size = body.grid().voxel_size();
     let mut damage = std::mem::take(body.damage_mut());
+    let gate = match body.law() {
+        Law::Endo2004 => 1.0,
+        Law::CorotationalVem => GATE,
+    };
     let found = threads::map(threads::chunks(&mut damage), |(first, damage)| {
         let mut found: Vec<Failure> = Vec::new();
+        let mut near = NearField::new(body);
         let nodes = body.breakable_nodes().among(first..first + damage.len());
         on_widest_lanes!(simd => for (id, node) in nodes {
             let damage = &mut damage[id.index() - first];
@@ -80,16 +126,19 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
                 continue;
             }
             // A fast test excludes most nodes: those far from failure.
-            let failure = match is_surely_intact(simd, body, id, node) {
+            let failure = match is_surely_below(simd, body, id, node, gate) {
                 true => None,
-                false => worst_cut(body, id, node),
+                false => failure(body, &mut near, id, node),
             };
             let Some(failure) = failure else {
                 let healed = *damage - duration / HEALING_TIME;
                 *damage = healed.max(0.0);
                 continue;
             };
-            let over = (failure.excess - 1.0).min(MAX_OVERLOAD);
+            let mut over = (failure.excess - 1.0).min(MAX_OVERLOAD);
+            if failure.advance.is_some() {
+                over = over.max(MIN_TIP_OVERLOAD);
+            }
             *damage += duration / DAMAGE_TIME * 2.0 * over;
             if *damage >= 1.0 && !body.cooldowns().covers(failure.at) {
                 found.push(failure);
@@ -99,24 +148,41 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
     });
     *body.damage_mut() = damage;
     let mut found = found.concat();
-    found.sort_by(|a, b| b.excess.total_cmp(&a.excess).then(a.node.cmp(&b.node)));
+    // Tips come first: an advancing crack unloads the surfaces beside it.
+    let is_surface = |failure: &Failure| failure.advance.is_none();
+    found.sort_by(|a, b| {
+        let tips_first = match body.law() {
+            Law::Endo2004 => std::cmp::Ordering::Equal,
+            Law::CorotationalVem => is_surface(a).cmp(&is_surface(b)),
+        };
+        tips_first.then(b.excess.total_cmp(&a.excess)).then(a.node.cmp(&b.node))
+    });
     let cooldown = (COOLDOWN_VOXELS * f64::from(size) / body.fastest_wave()) as f32;
     let chosen = without_worse_neighbour(found);
+    for failure in &chosen {
+        if let Some(Advance { to, deviation, .. }) = failure.advance {
+            body.tip_deviations_mut().advance(failure.at, to, deviation);
+        }
+    }
     let cooling = chosen.iter().map(|failure| failure.at);
     body.cooldowns_mut().start(cooling, cooldown);
     chosen
 }
 
 /// Returns those failures that have no worse failure nearby; `found` is sorted, the worst first. Failures in
-/// one plane do not exclude each other: they form the front of one crack, in 3D a line, which advances as a
-/// whole. If only the worst of them were released, cracks would advance too slowly, and the load would start
-/// new ones.
+/// one plane, and tips that grow in the same direction, do not exclude each other: they form the front of one
+/// crack, in 3D a line, which advances as a whole. If only the worst of them were released, cracks would
+/// advance too slowly, and the load would start new ones.
 fn without_worse_neighbour(found: Vec<Failure>) -> Vec<Failure> {
     let mut chosen: Vec<Failure> = Vec::new();
     for failure in found {
         let forestalls = |worse: &Failure| {
             let plane = |failure: &Failure| (failure.axis, failure.at[failure.axis]);
-            is_near(failure.at, worse.at) && plane(&failure) != plane(worse)
+            let is_alike = match (failure.advance, worse.advance) {
+                (Some(own), Some(worse)) => own.direction.dot(worse.direction) > ALIKE,
+                _ => false,
+            };
+            is_near(failure.at, worse.at) && plane(&failure) != plane(worse) && !is_alike
         };
         if !chosen.iter().any(forestalls) {
             chosen.push(failure);
@@ -125,101 +191,186 @@ fn without_worse_neighbour(found: Vec<Failure>) -> Vec<Failure> {
     chosen
 }
 
-/// Returns whether the node is certain to withstand all cuts through it, from a bound that is fast to
-/// compute. The pull of a cut is at most half the sum of the force magnitudes |f| of the n voxels around the
-/// node, and (Σ|f|)² ≤ n Σ|f|². The factor 0.2501 is ¼ and a margin for rounding. The area is that of one
-/// face, the least that a cut opens.
-#[inline(always)]
-fn is_surely_intact<D: Dim, S: Simd>(
-    simd: S,
+/// Returns the failure of a node, if it is overloaded.
+#[inline(never)]
+fn failure<D: Dim>(
+    body: &SoftBody<D>,
+    near: &mut NearField<D>,
+    id: NodeId,
+    node: &BreakableNode,
+) -> Option<Failure> {
+    let forces = NodalForces::on(body, id, node);
+    if body.law() == Law::Endo2004 {
+        let CutTension {
+            tension,
+            excess,
+            cut,
+        } = forces.worst_cut(body, node, 1.0)?;
+        return Some(start(body, id, node, tension, excess, cut));
+    }
+    let worst = forces.worst_cut(body, node, GATE)?;
+    match node.is_tip {
+        true => tip_failure(body, near, id, node, &forces, worst),
+        false => surface_failure(body, near, id, node, worst),
+    }
+}
+
+/// Returns the failure of a node at a smooth surface, if it is overloaded. `worst` is the cut with the highest
+/// nodal tension.
+fn surface_failure<D: Dim>(
+    body: &SoftBody<D>,
+    near: &mut NearField<D>,
+    id: NodeId,
+    node: &BreakableNode,
+    worst: CutTension,
+) -> Option<Failure> {
+    let radius = strength_radius(material(body, node)) / body.grid().voxel_size();
+    let radius = radius.min(MAX_RADIUS[D::N - 2]);
+    let mut tension = near.mean_tension(id, radius.max(MIN_RADIUS));
+    if radius < MIN_RADIUS && tension > 0.0 {
+        let wide = near.mean_tension(id, 2.0 * MIN_RADIUS).clamp(tension / SQRT_2, tension);
+        let slope = STEEPENING * libm::log2f(tension / wide);
+        tension *= libm::powf(MIN_RADIUS / radius, slope);
+    }
+    let excess = tension / (node.threshold * crumb_factor(node, &worst.cut));
+    (excess > 1.0).then(|| start(body, id, node, tension, excess, worst.cut))
+}
+
+/// Returns the radius within which the mean tension decides at a smooth surface [m].
+fn strength_radius(material: &Material) -> f32 {
+    let ratio = material.toughness / material.strength;
+    FRAC_2_PI * ratio * ratio
+}
+
+/// Returns the failure of a node by a cut with the given tension [Pa] and excess.
+fn start<D: Dim>(
     body: &SoftBody<D>,
     id: NodeId,
     node: &BreakableNode,
-) -> bool {
-    let threshold = face_area::<D>(body.grid().voxel_size()) * node.threshold;
-    let squares = body.element_forces().squares_on(simd, id);
-    0.2501 * node.group.count_ones() as f32 * squares <= threshold * threshold
-}
-
-/// Returns the most overloaded cut through a breakable node, if any is overloaded.
-#[inline(never)]
-fn worst_cut<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Option<Failure> {
+    tension: f32,
+    excess: f32,
+    cut: NodeCut,
+) -> Failure {
+    let young = material(body, node).elasticity.young as f32;
     let size = body.grid().voxel_size();
-    let mut forces = [Row::ZERO; 8];
-    for (octant, force) in octants(node.group).zip(body.element_forces().parts_on(id)) {
-        forces[octant] = force;
-    }
-    let total = forces.into_iter().sum::<Row>();
-    // Sum of the rotations of the elements around the node, computed only if a cut needs it.
-    let mut turn: Option<[Vec3; 3]> = None;
-    let mut worst: Option<(f32, f32, NodeCut)> = None;
-    for cut in body.breakable_nodes().cuts(node) {
-        let far = octants(cut.side).map(|octant| forces[octant]).sum::<Row>();
-        let near = total - far;
-        let pull = (far - near) * 0.5;
-        let area = f32::from(cut.faces) * face_area::<D>(size);
-        let is_crumb = cut.single_voxel_octants & node.crumbs != 0;
-        let threshold = node.threshold * if is_crumb { CRUMB_FACTOR } else { 1.0 };
-        let least = area * threshold * worst.map_or(1.0, |(excess, ..)| excess);
-        // The tension is never larger than the pull, so cuts with a small pull are skipped.
-        if pull.dot(pull) <= least * least {
-            continue;
-        }
-        let turn = turn.get_or_insert_with(|| total_turn(body, id));
-        let axis = cut.axis as usize;
-        let direction = Row::from(Vec3::new(turn[0][axis], turn[1][axis], turn[2][axis]));
-        let normal = direction * (1.0 / direction.length().max(1e-12));
-        if far.dot(normal) <= 0.0 || near.dot(normal) >= 0.0 {
-            continue;
-        }
-        let tension = tension(pull, normal);
-        if tension > least {
-            worst = Some((tension / (area * threshold), tension / area, *cut));
-        }
-    }
-    let (excess, stress, cut) = worst?;
-    let young = body.materials()[node.material as usize - 1]
-        .elasticity
-        .young as f32;
     let volume = (0..D::N).fold(1.0, |volume, _| volume * size);
-    Some(Failure {
+    Failure {
         node: id,
         at: body.mesh().node(id).at,
         side: cut.side,
         axis: cut.axis.into(),
         excess,
-        energy: stress * stress / (2.0 * young) * volume,
+        energy: tension * tension / (2.0 * young) * volume,
+        advance: None,
+    }
+}
+
+/// Returns the failure of a crack tip, if it is overloaded. `worst` is the cut with the highest nodal tension.
+fn tip_failure<D: Dim>(
+    body: &SoftBody<D>,
+    near: &mut NearField<D>,
+    id: NodeId,
+    node: &BreakableNode,
+    forces: &NodalForces,
+    worst: CutTension,
+) -> Option<Failure> {
+    let at = body.mesh().node(id).at;
+    let size = body.grid().voxel_size();
+    let material = material(body, node);
+    let open_excess = MAX_CLOSED_SHARE * worst.excess;
+    let others = tips_near::<D>(body, at);
+    let front = Front::near::<D>(size, &others);
+    let release = near.energy_release(id, &forces.mean_rotation(), front);
+    let rate = release.length();
+    let young = (material.elasticity.young * body.stiffness_scale()) as f32;
+    let poisson = material.elasticity.poisson as f32;
+    let intensity = (rate * young / (1.0 - poisson * poisson)).sqrt() / TIP_FACTOR[D::N - 2];
+    let mut excess = intensity / material.toughness;
+    // A crack that is short compared with the strength radius does not weaken the body.
+    let radius = strength_radius(material) / size;
+    if excess < 1.0 && radius > MIN_RADIUS {
+        let tension = near.mean_tension(id, radius.min(MAX_RADIUS[D::N - 2]));
+        excess = excess.max(tension / material.strength);
+    }
+    let excess = excess.min(open_excess);
+    if excess <= 1.0 {
+        return None;
+    }
+    let direction = release.normalize_or_zero();
+    let (cut, deviation) = next_cut(body, node, forces, at, direction, front.direction)?;
+    let excess = excess / crumb_factor(node, &cut);
+    if excess <= 1.0 {
+        return None;
+    }
+    let to = [0, 1, 2].map(|axis: usize| at[axis] + cut.advance[axis].clamp(-1.0, 1.0).round() as i32);
+    let area = f32::from(cut.faces) * face_area::<D>(size);
+    Some(Failure {
+        node: id,
+        at,
+        side: cut.side,
+        axis: cut.axis.into(),
+        excess,
+        energy: rate * area,
+        advance: Some(Advance {
+            to,
+            direction,
+            deviation,
+        }),
     })
 }
 
-/// Iterates over the octants whose bits are set in a mask.
-fn octants(mask: u8) -> impl Iterator<Item = usize> {
-    (0..8).filter(move |octant| mask >> octant & 1 == 1)
-}
-
-/// Returns the sum of the rotation matrices of all elements around a node.
-fn total_turn<D: Dim>(body: &SoftBody<D>, id: NodeId) -> [Vec3; 3] {
-    let mut turn = [Vec3::ZERO; 3];
-    for owner in body.mesh().carrier_ids(id) {
-        let rotation = body.element_forces().rotation(owner);
-        for row in 0..3 {
-            turn[row] += rotation[row];
+/// Returns the cut that keeps a tip closest to its ideal path, and its deviation after the cut. `direction` is
+/// that of growth, `along` that of the front, both as unit vectors or zero.
+fn next_cut<D: Dim>(
+    body: &SoftBody<D>,
+    node: &BreakableNode,
+    forces: &NodalForces,
+    at: Point,
+    direction: Vec3,
+    along: Vec3,
+) -> Option<(NodeCut, Vec3)> {
+    let along = (along - direction * along.dot(direction)).normalize_or_zero();
+    let project = |deviation: Vec3| {
+        let across = deviation - direction * deviation.dot(direction);
+        across - along * across.dot(along)
+    };
+    let before = body.tip_deviations().of_tip::<D>(at, project);
+    let mut best: Option<(f32, NodeCut, Vec3)> = None;
+    for cut in body.breakable_nodes().cuts(node) {
+        let step = Vec3::from(cut.advance);
+        if step.dot(direction) < MIN_ADVANCE || forces.pull(cut).is_none() {
+            continue;
+        }
+        let deviation = project(before + step);
+        let apart = deviation.length();
+        if best.is_none_or(|(least, ..)| apart < least - 1e-6) {
+            best = Some((apart, *cut, deviation));
         }
     }
-    turn
+    best.map(|(_, cut, deviation)| (cut, deviation))
 }
 
-/// Returns the part of a voxel's face that belongs to one of its corners [m in 2D, m² in 3D]: half an edge in
-/// 2D, a quarter of a square in 3D.
-fn face_area<D: Dim>(size: f32) -> f32 {
-    (1..D::N).fold(1.0, |area, _| area * 0.5 * size)
+/// Returns the offsets [voxels] of the other tips within the outer radius of the near field of a tip; empty in
+/// 2D, where a front is a point.
+fn tips_near<D: Dim>(body: &SoftBody<D>, at: Point) -> Vec<Vec3> {
+    if D::N == 2 {
+        return Vec::new();
+    }
+    let radius = outer_radius::<D>();
+    let reach = radius as i32;
+    let near = points_in(at.map(|k| k - reach), at.map(|k| k + reach));
+    let offset = |point: Point| Vec3::from([0, 1, 2].map(|k: usize| (point[k] - at[k]) as f32));
+    let is_tip = |point: Point| {
+        point != at && body.has_tip(point)
+    };
+    near.filter(|&point| offset(point).length_squared() <= radius * radius && is_tip(point))
+        .map(offset)
+        .collect()
 }
 
-/// Returns √(Tₙ² + ¼ Tₛ²) [N] for a pull with the part Tₙ along a unit normal and the part Tₛ across it.
-fn tension(pull: Row, normal: Row) -> f32 {
-    let opening = pull.dot(normal);
-    let shear = (pull.dot(pull) - opening * opening).max(0.0);
-    (opening * opening + 0.25 * shear).sqrt()
+/// Weakest material around a node.
+fn material<'a, D: Dim>(body: &'a SoftBody<D>, node: &BreakableNode) -> &'a Material {
+    &body.materials()[node.material as usize - 1]
 }
 
 #[cfg(test)]
@@ -235,6 +386,7 @@ mod tests {
             axis,
             excess: 2.0,
             energy: 0.0,
+            advance: None,
         };
         let worst = failure([8, 8, 8], 0);
         let along = failure([8, 9, 8], 0);

@@ -1,10 +1,12 @@
 //! Access to the state of bodies, for contacts, fracture and the world.
 
 use super::SoftBody;
+use super::body_topology::Topology;
 use super::cooldowns::Cooldowns;
-use crate::foundation::dim::Dim;
+use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::{ElementId, IndexVec, NodeId};
 use crate::fracture::breakable_nodes::BreakableNodes;
+use crate::fracture::tip_deviations::TipDeviations;
 use crate::rigid_body::layers::Layers;
 use crate::soft_body::element_forces::{ElementBatches, Row};
 use crate::topology::changes::History;
@@ -90,6 +92,32 @@ impl<D: Dim> SoftBody<D> {
 
     pub(crate) fn cooldowns_mut(&mut self) -> &mut Cooldowns {
         &mut self.state.cooldowns
+    }
+
+    #[inline(always)]
+    pub(crate) fn tip_deviations(&self) -> &TipDeviations {
+        &self.state.tip_deviations
+    }
+
+    pub(crate) fn tip_deviations_mut(&mut self) -> &mut TipDeviations {
+        &mut self.state.tip_deviations
+    }
+
+    /// Returns whether a node at a lattice point is a crack tip.
+    pub(crate) fn has_tip(&self, at: Point) -> bool {
+        let Topology {
+            connectivity, mesh, ..
+        } = &self.topology;
+        let mut nodes = mesh.nodes_at(at, connectivity);
+        nodes.any(|id| self.cache.breakable.is_tip(id))
+    }
+
+    /// Removes the deviations at the lattice points of `nodes` that are no longer crack tips.
+    pub(crate) fn forget_former_tips(&mut self, nodes: &[NodeId]) {
+        let mut deviations = std::mem::take(&mut self.state.tip_deviations);
+        let points = nodes.iter().map(|&id| self.topology.mesh.node(id).at);
+        deviations.keep_tips(points, |at| self.has_tip(at));
+        self.state.tip_deviations = deviations;
     }
 
     pub(crate) fn set_layers(&mut self, layers: Layers) {

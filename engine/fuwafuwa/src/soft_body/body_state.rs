@@ -4,6 +4,7 @@ use super::cooldowns::Cooldowns;
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{IndexVec, NodeId};
+use crate::fracture::tip_deviations::TipDeviations;
 use crate::rigid_body::layers::Layers;
 use crate::soft_body::element_forces::{ElementBatches, Row};
 
@@ -31,6 +32,8 @@ pub struct State<D: Dim> {
     /// Lattice points at which nodes were released recently, with the time until nodes around them can fail
     /// again.
     pub cooldowns: Cooldowns,
+    /// Deviation of each crack tip from its ideal path.
+    pub tip_deviations: TipDeviations,
     /// Position of each node [m], extrapolated by the largest stiffness damping of the materials. The elastic
     /// forces of that material are evaluated at these positions.
     pub ahead: IndexVec<NodeId, Row>,
@@ -53,8 +56,8 @@ pub struct State<D: Dim> {
 
 hash_state! {
     [D: Dim] struct State<D> {
-        position, velocity, mass, inverse_mass, fixed, damage, cooldowns, ahead, gravity_scale, layers,
-        user_data, placed, scale_changed, batches,
+        position, velocity, mass, inverse_mass, fixed, damage, cooldowns, tip_deviations, ahead,
+        gravity_scale, layers, user_data, placed, scale_changed, batches,
     }
 }
 
@@ -69,6 +72,7 @@ impl<D: Dim> State<D> {
             fixed: IndexVec::default(),
             damage: IndexVec::default(),
             cooldowns: Cooldowns::default(),
+            tip_deviations: TipDeviations::default(),
             ahead: IndexVec::default(),
             gravity_scale: 1.0,
             layers: Layers::default(),

@@ -33,6 +33,9 @@ impl<D: Dim> SoftBody<D> {
         let points = self.state.cooldowns.points();
         let is_known = { points }.all(|at| self.topology.connectivity.contains(at));
         ensure(is_known, "cooldown points")?;
+        let points = self.state.tip_deviations.valid_points();
+        let is_known = points.is_some_and(|mut points| points.all(|at| self.topology.connectivity.contains(at)));
+        ensure(is_known, "deviations of crack tips")?;
         for (id, node) in self.topology.mesh.nodes() {
             let defect = |what: &str| {
                 Err(InvariantViolation::of(format!(

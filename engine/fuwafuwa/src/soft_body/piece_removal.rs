@@ -43,6 +43,7 @@ impl<D: Dim> SoftBody<D> {
         let batches = &mut self.state.batches;
         batches.update(&topology.mesh, &topology.grid, &elements, &[], |_| false);
         self.find_breakable(&nodes);
+        self.forget_former_tips(&nodes);
         self.cache.awake_is_stale = true;
         self.refresh_awake();
         let changes = Changes {

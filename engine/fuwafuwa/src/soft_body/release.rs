@@ -71,6 +71,7 @@ impl<D: Dim> SoftBody<D> {
         let nodes = lists.into_iter().flatten().copied();
         let nodes = ascending(nodes, self.topology.mesh.node_capacity());
         self.find_breakable(&nodes);
+        self.forget_former_tips(&nodes);
         self.update_skin_points(&nodes);
         self.cache.awake_is_stale = true;
         let new = remodelled.inherited.iter().map(|new| new.node);

@@ -197,6 +197,13 @@ impl<D: Dim> Mesh<D> {
         self.nodes[id]
     }
 
+    /// Returns the nodes at a lattice point; none if the point is outside the grid.
+    pub(crate) fn nodes_at(&self, at: Point, connectivity: &Connectivity<D>) -> impl Iterator<Item = NodeId> {
+        let is_inside = connectivity.contains(at);
+        let nodes = is_inside.then(|| self.by_point.at(connectivity.index(at)));
+        nodes.into_iter().flatten()
+    }
+
     /// Returns the element with an id, if it is alive.
     pub fn element(&self, id: ElementId) -> Option<&Element> {
         self.elements.get(id.index())?.as_ref()

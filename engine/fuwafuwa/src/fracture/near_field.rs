@@ -1,0 +1,349 @@
+//! Load near a node: the driving force on a crack tip, and the mean tension at a surface.
+//!
+//! Both are sums over the elements within a few voxels, so that neither the voxels nor the steps of a crack
+//! along them matter. The driving force is the energy-release vector, also called configurational force
+//! [Eshelby 1951; Rice 1968]:
+//!
+//! ```text
+//! J = (1/L) Σ V [(F − R̄)ᵀ P − W] ∇q        |J| = energy release rate       J / |J| = direction of growth
+//! ```
+//!
+//! Each element has the volume V, the deformation gradient F, the stress P and the energy density W. R̄ is the
+//! rotation at the tip. The weight q falls from 1 near the tip to 0 at [`outer_radius`]. In 3D, L is the length of
+//! the crack front, weighted by q; in 2D it is 1 m.
+
+use crate::foundation::dim::{Dim, Point, points_in};
+use crate::foundation::ids::{ElementId, NodeId};
+use crate::math::row::Row;
+use crate::soft_body::SoftBody;
+use crate::soft_body::element_law::Elasticity;
+use crate::soft_body::plasticity::plastic_stiffness_factor;
+use glam::Vec3;
+
+/// Distance from the tip at which the weight q begins to fall [voxels].
+const INNER_RADIUS: f32 = 1.5;
+/// Number of elements whose loads are kept for the fields of neighbouring nodes; a power of two.
+const CACHED: usize = 512;
+/// Volume ratio below which the stress of an element counts as 0. Such an element is crushed, and dividing by
+/// the ratio would make its stress arbitrarily large.
+const MIN_RATIO: f32 = 0.1;
+
+/// Distance from the tip at which the weight q reaches 0 [voxels]. In 3D the radius is smaller, because the
+/// number of elements grows with its cube.
+pub fn outer_radius<D: Dim>() -> f32 {
+    if D::N == 2 { 3.0 } else { 2.0 }
+}
+
+/// Matrix by rows.
+type Rows = [Vec3; 3];
+
+/// Deformation, stress and energy of one element.
+#[derive(Copy, Clone, Debug)]
+struct Load {
+    deformation: Rows,
+    /// First Piola–Kirchhoff stress [Pa].
+    stress: Rows,
+    /// Elastic energy density [J/m³], without the energy of hourglass modes.
+    energy: f32,
+}
+
+/// Computes the loads near nodes of one body. Keeps the loads of elements, because the fields of
+/// neighbouring nodes overlap.
+pub struct NearField<'a, D: Dim> {
+    body: &'a SoftBody<D>,
+    /// Load of the element with id k at index k modulo [`CACHED`], if it is the last one computed there.
+    loads: Vec<Option<(ElementId, Load)>>,
+    /// Scratch list of the elements near a node, with the volume of their part within a radius [voxels].
+    near: Vec<(ElementId, f32)>,
+}
+
+impl<'a, D: Dim> NearField<'a, D> {
+    /// Creates a calculator for a body, whose positions and rotations must not change meanwhile.
+    pub fn new(body: &'a SoftBody<D>) -> Self {
+        Self {
+            body,
+            loads: Vec::new(),
+            near: Vec::new(),
+        }
+    }
+
+    /// Returns the energy-release vector [J/m²] at a crack tip, along the axes of the undeformed body.
+    pub fn energy_release(&mut self, tip: NodeId, rotation: &Rows, front: Front) -> Vec3 {
+        let body = self.body;
+        let (mesh, at) = (body.mesh(), body.mesh().node(tip).at);
+        let radius = outer_radius::<D>();
+        self.gather(tip, radius.ceil() as i32, |_| 1.0);
+        let half_voxel = 0.5 * body.grid().voxel_size();
+        let mut force = Vec3::ZERO;
+        for place in 0..self.near.len() {
+            let (id, _) = self.near[place];
+            let element = mesh.element(id).expect("elements that own voxels are alive");
+            let class = mesh.element_class(element);
+            let half = half_voxel * element.cell.width() as f32;
+            // V ∇q, in voxel faces times half the width of the element.
+            let mut slope = Vec3::ZERO;
+            for (&node, gradient) in element.nodes.iter().zip(&class.gradients) {
+                slope += gradient.as_vec3() * weight::<D>(at, mesh.node(node).at);
+            }
+            if slope == Vec3::ZERO {
+                continue;
+            }
+            let slope = slope * (1..D::N).fold(1.0, |area, _| area * half);
+            let load = self.load(id);
+            // Σᵢ (F − R̄)ᵢ (P ∇q)ᵢ − W ∇q
+            force -= slope * load.energy;
+            for row in 0..D::N {
+                let traction = load.stress[row].dot(slope);
+                force += (load.deformation[row] - rotation[row]) * traction;
+            }
+        }
+        (D::N..3).for_each(|axis| force[axis] = 0.0);
+        force / front.length
+    }
+
+    /// Returns the greatest principal value of the mean Cauchy stress [Pa] within `radius` [voxels] of a node.
+    pub fn mean_tension(&mut self, node: NodeId, radius: f32) -> f32 {
+        let at = self.body.mesh().node(node).at;
+        let share = |voxel: Point| {
+            let apart = distance::<D>([0, 1, 2].map(|axis: usize| {
+                (voxel[axis] - at[axis]) as f32 + if axis < D::N { 0.5 } else { 0.0 }
+            }));
+            (radius + 0.5 - apart).clamp(0.0, 1.0)
+        };
+        self.gather(node, (radius + 0.5).ceil() as i32, share);
+        let mut sum = [Vec3::ZERO; 3];
+        let mut volume = 0.0;
+        for place in 0..self.near.len() {
+            let (id, share) = self.near[place];
+            if share == 0.0 {
+                continue;
+            }
+            let load = self.load(id);
+            volume += share;
+            let ratio = determinant(&load.deformation);
+            if ratio < MIN_RATIO {
+                continue;
+            }
+            let share = share / ratio;
+            for row in 0..D::N {
+                for column in 0..D::N {
+                    sum[row][column] +=
+                        share * load.stress[row].dot(load.deformation[column]);
+                }
+            }
+        }
+        match volume > 0.0 {
+            true => greatest_eigenvalue::<D>(&sum) / volume,
+            false => 0.0,
+        }
+    }
+
+    /// Lists the elements of the node's piece in the voxels up to `reach` away, each once, with the sum of
+    /// `share` over these voxels.
+    fn gather(&mut self, node: NodeId, reach: i32, share: impl Fn(Point) -> f32) {
+        let body = self.body;
+        let (mesh, pieces) = (body.mesh(), body.pieces());
+        let (at, piece) = (mesh.node(node).at, pieces.of_node(node));
+        let (mut low, mut high) = (at, at);
+        low[..D::N].iter_mut().for_each(|k| *k -= reach);
+        high[..D::N].iter_mut().for_each(|k| *k += reach - 1);
+        self.near.clear();
+        for voxel in points_in(low, high) {
+            let Some(owner) = mesh.owner(voxel) else {
+                continue;
+            };
+            self.near.push((owner, share(voxel)));
+        }
+        // The order of the sums must not depend on the ids of elements, so the list keeps the order of the
+        // voxels.
+        let mut count = 0;
+        for place in 0..self.near.len() {
+            let (owner, share) = self.near[place];
+            let known = self.near[..count].iter().rposition(|&(id, _)| id == owner);
+            match known {
+                Some(known) => self.near[known].1 += share,
+                None if pieces.of_element(owner) == piece => {
+                    self.near[count] = (owner, share);
+                    count += 1;
+                }
+                None => {}
+            }
+        }
+        self.near.truncate(count);
+    }
+
+    /// Returns the load of an element.
+    fn load(&mut self, id: ElementId) -> Load {
+        if self.loads.is_empty() {
+            self.loads.resize(CACHED, None);
+        }
+        let place = id.index() % CACHED;
+        match self.loads[place] {
+            Some((known, load)) if known == id => load,
+            _ => {
+                let load = load_of(self.body, id);
+                self.loads[place] = Some((id, load));
+                load
+            }
+        }
+    }
+}
+
+/// Returns the weight q of a lattice point, for a tip at another lattice point.
+fn weight<D: Dim>(tip: Point, at: Point) -> f32 {
+    let apart = distance::<D>([0, 1, 2].map(|axis: usize| (at[axis] - tip[axis]) as f32));
+    let radius = outer_radius::<D>();
+    ((radius - apart) / (radius - INNER_RADIUS)).clamp(0.0, 1.0)
+}
+
+/// Returns the integral of the weight q over the first `length` of a line through the tip [voxels].
+fn weight_along<D: Dim>(length: f32) -> f32 {
+    let radius = outer_radius::<D>();
+    let inner = length.min(INNER_RADIUS);
+    let outer = length.clamp(INNER_RADIUS, radius) - radius;
+    let width = radius - INNER_RADIUS;
+    inner + 0.5 * (width - outer * outer / width)
+}
+
+/// Crack front near a tip.
+#[derive(Copy, Clone, Debug)]
+pub struct Front {
+    /// Unit vector along the front, along the axes of the undeformed body; zero in 2D and at a lone tip.
+    pub direction: Vec3,
+    /// Length of the front, weighted by q [m]; 1 in 2D.
+    pub length: f32,
+}
+
+impl Front {
+    /// Returns the front near a tip. `others` are the offsets of the other tips of the body within the outer
+    /// radius [voxels], `size` is the voxel size [m]. The front is taken as a straight line through the tip to
+    /// the farthest of the others, and on the other side as far as tips reach there.
+    pub fn near<D: Dim>(size: f32, others: &[Vec3]) -> Self {
+        if D::N == 2 {
+            return Self {
+                direction: Vec3::ZERO,
+                length: 1.0,
+            };
+        }
+        let mut far = Vec3::ZERO;
+        for &offset in others {
+            if offset.length_squared() > far.length_squared() {
+                far = offset;
+            }
+        }
+        let direction = far.normalize_or_zero();
+        let back = others.iter().map(|offset| -offset.dot(direction));
+        let back = back.fold(0.0, f32::max);
+        let side = |reach: f32| weight_along::<D>(reach.max(0.5));
+        Self {
+            direction,
+            length: size * (side(far.length()) + side(back)),
+        }
+    }
+}
+
+/// Returns the deformation, the stress and the energy density of an element, from the positions of its nodes
+/// and its rotation in the last substep.
+fn load_of<D: Dim>(body: &SoftBody<D>, id: ElementId) -> Load {
+    let mesh = body.mesh();
+    let element = mesh.element(id).expect("elements that own voxels are alive");
+    let class = mesh.element_class(element);
+    let half = 0.5 * body.grid().voxel_size() * element.cell.width() as f32;
+    let scale = 1.0 / (class.volume as f32 * half);
+    let positions = body.positions();
+    let origin = positions[element.nodes[0]].xyz();
+    let mut deformation = [Vec3::ZERO; 3];
+    for (&node, gradient) in element.nodes.iter().zip(&class.gradients) {
+        let offset: Row = positions[node];
+        let offset = (offset.xyz() - origin) * scale;
+        let gradient = gradient.as_vec3();
+        (0..D::N).for_each(|row| deformation[row] += gradient * offset[row]);
+    }
+    (D::N..3).for_each(|row| deformation[row] = Vec3::AXES[row]);
+    let batches = body.element_forces();
+    let rotation = batches.rotation(id);
+    let young = body.material(element).elasticity.young * body.stiffness_scale();
+    let elasticity = Elasticity {
+        young,
+        ..body.material(element).elasticity
+    };
+    let Some(plastic) = batches.plastic_inverse(id) else {
+        let (stress, energy) = elastic_stress::<D>(elasticity, &deformation, &rotation);
+        return Load {
+            deformation,
+            stress,
+            energy,
+        };
+    };
+    let elastic = product(&deformation, &plastic);
+    let soft = plastic_stiffness_factor::<D>(&plastic.map(|row| row.as_dvec3())) as f32;
+    let (stress, energy) = elastic_stress::<D>(elasticity, &elastic, &rotation);
+    let transposed = [0, 1, 2].map(|k: usize| Vec3::new(plastic[0][k], plastic[1][k], plastic[2][k]));
+    Load {
+        deformation,
+        stress: product(&stress, &transposed).map(|row| row * soft),
+        energy: soft * energy,
+    }
+}
+
+/// Returns the first Piola–Kirchhoff stress [Pa] and the energy density [J/m³] of an elastic deformation with
+/// a known rotation, as in [`Law::CorotationalVem`](crate::Law::CorotationalVem) without the resistance to
+/// crushing.
+fn elastic_stress<D: Dim>(elasticity: Elasticity, deformation: &Rows, rotation: &Rows) -> (Rows, f32) {
+    let (shear, lame) = (elasticity.shear_modulus() as f32, elasticity.lame() as f32);
+    let mut stress = [Vec3::ZERO; 3];
+    let (mut spread, mut squared) = (-(D::N as f32), 0.0);
+    for row in 0..D::N {
+        let strain = deformation[row] - rotation[row];
+        spread += rotation[row].dot(deformation[row]);
+        squared += strain.length_squared();
+        stress[row] = strain * (2.0 * shear);
+    }
+    for row in 0..D::N {
+        stress[row] += rotation[row] * (lame * spread);
+    }
+    (stress, shear * squared + 0.5 * lame * spread * spread)
+}
+
+fn product(a: &Rows, b: &Rows) -> Rows {
+    a.map(|row| b[0] * row.x + b[1] * row.y + b[2] * row.z)
+}
+
+fn determinant(rows: &Rows) -> f32 {
+    rows[0].dot(rows[1].cross(rows[2]))
+}
+
+/// Returns the greatest eigenvalue of the symmetric part of a matrix; in 2D, of its first two rows and columns.
+fn greatest_eigenvalue<D: Dim>(matrix: &Rows) -> f32 {
+    let [a, b, c] = [0, 1, 2].map(|k: usize| matrix[k][k]);
+    let half = |i: usize, j: usize| 0.5 * (matrix[i][j] + matrix[j][i]);
+    let (xy, yz, zx) = (half(0, 1), half(1, 2), half(2, 0));
+    if D::N == 2 {
+        let (mean, apart) = (0.5 * (a + b), 0.5 * (a - b));
+        return mean + (apart * apart + xy * xy).sqrt();
+    }
+    // Newton's method on the characteristic polynomial of the deviator, t³ − p t − r. From above the greatest
+    // root the steps descend to it.
+    let mean = (a + b + c) / 3.0;
+    let (a, b, c) = (a - mean, b - mean, c - mean);
+    let squares = xy * xy + yz * yz + zx * zx;
+    let p = 0.5 * (a * a + b * b + c * c) + squares;
+    let r = a * (b * c - yz * yz) - xy * (xy * c - yz * zx) + zx * (xy * yz - b * zx);
+    // |root| ≤ 2 √(p / 3).
+    let mut root = 2.0 * (p / 3.0).sqrt();
+    for _ in 0..20 {
+        let slope = 3.0 * root * root - p;
+        let step = (root * (root * root - p) - r) / slope.max(f32::MIN_POSITIVE);
+        if step <= 1e-6 * root {
+            break;
+        }
+        root -= step;
+    }
+    mean + root
+}
+
+/// Returns the length of a vector of the dimension.
+fn distance<D: Dim>(offset: [f32; 3]) -> f32 {
+    let squares = offset.into_iter().take(D::N).map(|k| k * k);
+    squares.sum::<f32>().sqrt()
+}

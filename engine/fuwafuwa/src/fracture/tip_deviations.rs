@@ -1,0 +1,77 @@
+//! Deviations of crack tips from their ideal paths.
+//!
+//! A crack can advance only along the faces of voxels. A crack in any other direction is a staircase, and a
+//! tip must know how far the staircase has left the ideal path, so that the next step returns to it, as in
+//! the line algorithm of [Bresenham 1965].
+
+use crate::foundation::dim::{Dim, Point};
+use crate::foundation::hash::hash_state;
+use glam::Vec3;
+use std::collections::BTreeMap;
+
+/// Distance along each axis within which tips of one front share their deviations [voxels].
+const FRONT_REACH: i32 = 2;
+
+/// Largest deviation within one front [voxels]; a tip that follows its path stays within 1.
+const MAX_DEVIATION: f32 = 1.5;
+
+/// Deviation of each crack tip from its ideal path, by lattice point. Tips without an entry have none.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TipDeviations {
+    /// Vector from the ideal path to the tip [voxels], along the axes of the undeformed body.
+    at: BTreeMap<Point, [f32; 3]>,
+}
+
+hash_state! { struct TipDeviations { at } }
+
+impl TipDeviations {
+    /// Returns the deviation of a tip [voxels]. `project` removes the components of a deviation that do not
+    /// matter: those along the direction of growth and along the front. In 3D this is the mean of the estimates
+    /// of all tips of the front within [`FRONT_REACH`], so that the front stays together.
+    pub fn of_tip<D: Dim>(&self, tip: Point, project: impl Fn(Vec3) -> Vec3) -> Vec3 {
+        let reach = if D::N == 2 { 0 } else { FRONT_REACH };
+        let (mut sum, mut count) = (Vec3::ZERO, 0.0f32);
+        let [low, high] = [-reach, reach].map(|reach| tip.map(|k| k + reach));
+        let columns = (low[0]..=high[0]).flat_map(|x| (low[1]..=high[1]).map(move |y| [x, y]));
+        for [x, y] in columns.filter(|_| !self.at.is_empty()) {
+            for (point, &deviation) in self.at.range([x, y, low[2]]..=[x, y, high[2]]) {
+                let offset = Vec3::from([0, 1, 2].map(|k: usize| (tip[k] - point[k]) as f32));
+                let estimate = project(offset + Vec3::from(deviation));
+                // A larger deviation belongs to another crack.
+                if estimate.length() < MAX_DEVIATION {
+                    sum += estimate;
+                    count += 1.0;
+                }
+            }
+        }
+        sum / count.max(1.0)
+    }
+
+    /// Moves the tip at `from` to `to`, with a new deviation [voxels].
+    pub fn advance(&mut self, from: Point, to: Point, deviation: Vec3) {
+        self.at.remove(&from);
+        self.at.insert(to, deviation.to_array());
+    }
+
+    /// Removes the deviations at those of `points` that are no longer tips.
+    pub fn keep_tips(&mut self, points: impl Iterator<Item = Point>, is_tip: impl Fn(Point) -> bool) {
+        if self.at.is_empty() {
+            return;
+        }
+        for point in points {
+            if self.at.contains_key(&point) && !is_tip(point) {
+                self.at.remove(&point);
+            }
+        }
+    }
+
+    /// Returns the lattice points of all entries; `None` if a deviation is not a number or too large. A cut adds
+    /// at most a step of √3 voxels to a mean deviation.
+    #[cfg(feature = "serde")]
+    pub fn valid_points(&self) -> Option<impl Iterator<Item = Point> + '_> {
+        let most = MAX_DEVIATION + 3f32.sqrt();
+        let is_valid = |&deviation: &[f32; 3]| Vec3::from(deviation).length() <= most;
+        self.at.values().all(is_valid).then(|| self.at.keys().copied())
+    }
+}
