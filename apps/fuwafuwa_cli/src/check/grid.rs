@@ -33,8 +33,8 @@ use std::f64::consts::PI;
 const TOLERANCES: [f64; 2] = [0.03, 0.07];
 /// Maximum relative difference of the reference from that of a coarser mesh.
 const CONVERGED: f64 = 0.03;
-/// Strength of whole bars [Pa]; their strain at failure is 2 %.
-const STRENGTH: f32 = 100.0;
+/// Strengths of whole bars [Pa]. Their strain at failure is 2 % and 20 %; the latter is that of the default material.
+const STRENGTHS: [f32; 2] = [100.0, 1000.0];
 /// Length of whole bars [m].
 const LENGTH: f64 = 1.5;
 /// Initial load of whole bars, relative to the expected one.
@@ -90,16 +90,19 @@ fn whole_bars(
     series: &mut Vec<Points>,
     progress: &Progress,
 ) -> Result<Vec<Outcome>> {
-    let cases: Vec<(f64, usize, usize)> = { DEPTHS.into_iter() }
-        .flat_map(|depth| sizes.iter().map(move |&(dim, voxels)| (depth, dim, voxels)))
-        .collect();
-    let loads = parallel::each(&cases, progress, |&(depth, dim, voxels)| match dim {
-        2 => whole_load::<Dim2>(voxels, depth),
-        _ => whole_load::<Dim3>(voxels, depth),
+    let mut cases = Vec::new();
+    for strength in STRENGTHS {
+        for depth in DEPTHS {
+            cases.extend(sizes.iter().map(|&(dim, voxels)| (strength, depth, dim, voxels)));
+        }
+    }
+    let loads = parallel::each(&cases, progress, |&(strength, depth, dim, voxels)| match dim {
+        2 => whole_load::<Dim2>(voxels, depth, strength),
+        _ => whole_load::<Dim3>(voxels, depth, strength),
     })?;
     let mut outcomes = Vec::new();
-    for (&(depth, dim, voxels), load) in cases.iter().zip(loads) {
-        let name = format!("{dim}D, whole, grips of {depth} m");
+    for (&(strength, depth, dim, voxels), load) in cases.iter().zip(loads) {
+        let name = format!("{dim}D, whole, {strength} Pa, grips of {depth} m");
         let row = format!("grid {name}, n = {voxels}, load / (strength × area)");
         outcomes.push(Outcome::within(row, load, around_one(TOLERANCES[0])));
         add_point(series, name, (voxels as f64, load));
@@ -109,7 +112,7 @@ fn whole_bars(
 
 /// Pulls at a bar 1 m wide until the first node splits. Returns the load before that, relative to strength × area.
 /// NaN if no node splits.
-fn whole_load<D: Dim>(voxels: usize, depth: f64) -> Result<f64> {
+fn whole_load<D: Dim>(voxels: usize, depth: f64, strength: f32) -> Result<f64> {
     let length = (LENGTH * voxels as f64).round() as usize;
     let size = [length, voxels, D::depth(voxels)];
     let grid = VoxelGrid::<D>::from_fn(size, 1.0 / voxels as f32, |_| 1)?;
@@ -118,8 +121,9 @@ fn whole_load<D: Dim>(voxels: usize, depth: f64) -> Result<f64> {
             poisson: 0.0,
             ..Material::default().elasticity
         },
-        strength: STRENGTH,
-        toughness: 0.2 * STRENGTH,
+        strength,
+        strength_scatter: 0.0,
+        toughness: 0.2 * strength,
         damping: Damping {
             mass: 0.0,
             ..Damping::default()
@@ -130,7 +134,7 @@ fn whole_load<D: Dim>(voxels: usize, depth: f64) -> Result<f64> {
     let inner = (depth * voxels as f64 + 1e-6).floor();
     let free = length as f64 - 2.0 * inner;
     // Displacement of a node at the expected load [m].
-    let strain = f64::from(STRENGTH) / material.elasticity.young;
+    let strain = f64::from(strength) / material.elasticity.young;
     let stretch = |place: f64| {
         let share = (place - inner).clamp(0.0, free) - 0.5 * free;
         share / voxels as f64 * strain
@@ -162,7 +166,7 @@ fn whole_load<D: Dim>(voxels: usize, depth: f64) -> Result<f64> {
     for _ in 0..((MOST - START) / RATE / tick) as usize {
         let split = world.step().nodes_split;
         let forces = left.iter().map(|&id| f64::from(world[bar].force_on(id)[0]));
-        let load = forces.sum::<f64>() / f64::from(STRENGTH);
+        let load = forces.sum::<f64>() / f64::from(strength);
         if split > 0 {
             return Ok(if last.is_nan() { load } else { last });
         }

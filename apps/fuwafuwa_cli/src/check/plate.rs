@@ -276,6 +276,7 @@ impl<D: PlateDim> Plate<D> {
             elasticity: setting.elasticity(),
             toughness: TOUGHNESS as f32,
             strength: setting.strength as f32,
+            strength_scatter: 0.0,
             damping: Damping {
                 mass: setting.damping,
                 ..Damping::default()
