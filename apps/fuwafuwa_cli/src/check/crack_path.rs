@@ -60,8 +60,14 @@ impl Element {
 
     /// Returns the normal and the shear stress on this element for a sliding and for an overlap of 1 of another.
     fn tractions(&self, other: &Self) -> [[f64; 2]; 2] {
-        let normal = [dot(self.normal(), other.along), dot(self.normal(), other.normal())];
-        let along = [dot(self.along, other.along), dot(self.along, other.normal())];
+        let normal = [
+            dot(self.normal(), other.along),
+            dot(self.normal(), other.normal()),
+        ];
+        let along = [
+            dot(self.along, other.along),
+            dot(self.along, other.normal()),
+        ];
         other.stress(self.middle).map(|[xx, yy, xy]| {
             let pull = [
                 xx * normal[0] + xy * normal[1],
@@ -112,10 +118,12 @@ fn shear_ratio(points: &[[f64; 2]], width: f64) -> Result<f64> {
 
 /// Returns the elements of the right half of the crack, then of its left half, then of the sides.
 fn elements(points: &[[f64; 2]], width: f64) -> Vec<Element> {
-    let right = points.windows(2).map(|ends| Element::between(ends[0], ends[1]));
+    let right = points
+        .windows(2)
+        .map(|ends| Element::between(ends[0], ends[1]));
     let mirrored = |at: [f64; 2]| [-at[0], -at[1]];
-    let left = { points.windows(2) }
-        .map(|ends| Element::between(mirrored(ends[1]), mirrored(ends[0])));
+    let left =
+        { points.windows(2) }.map(|ends| Element::between(mirrored(ends[1]), mirrored(ends[0])));
     let mut all: Vec<Element> = right.chain(left).collect();
     let count = (2.0 * SIDE / SIDE_STEP).round() as i32;
     for x in [-0.5 * width, 0.5 * width] {
@@ -189,7 +197,10 @@ mod tests {
             let points = path(0.08, angle, 20.0, 0.082).unwrap();
             let way = (points[1][1] - points[0][1]).atan2(points[1][0] - points[0][0]);
             let wanted = angle + kink(angle.to_radians().tan()).to_degrees();
-            assert!((way.to_degrees() - wanted).abs() < 2.0, "{angle}: {way} {wanted}");
+            assert!(
+                (way.to_degrees() - wanted).abs() < 2.0,
+                "{angle}: {way} {wanted}"
+            );
         }
     }
 

@@ -59,7 +59,15 @@ struct Spent {
 pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
     let numbers: &[(usize, usize)] = match extent {
         Extent::Usual => &[(2, 32), (2, 64), (3, 16)],
-        Extent::Full => &[(2, 16), (2, 32), (2, 64), (2, 128), (3, 16), (3, 24), (3, 32)],
+        Extent::Full => &[
+            (2, 16),
+            (2, 32),
+            (2, 64),
+            (2, 128),
+            (3, 16),
+            (3, 24),
+            (3, 32),
+        ],
     };
     let mut cases = Vec::new();
     for &(dim, voxels) in numbers {
@@ -81,7 +89,10 @@ pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
     let mut outcomes = Vec::new();
     for (case, spent) in cases.iter().zip(found) {
         let (edge, strip) = match case.is_dull {
-            true => ("dull", 2.0 * f64::from(RADIUS) * f64::from(material.strength)),
+            true => (
+                "dull",
+                2.0 * f64::from(RADIUS) * f64::from(material.strength),
+            ),
             false => ("sharp", 0.0),
         };
         let Case {
@@ -141,9 +152,8 @@ fn cut<D: Dim>(case: &Case) -> Result<Spent> {
         ..WorldConfig::default()
     })?;
     world.add_soft_body(body)?;
-    let vector = |x: f64, y: f64, z: f64| {
-        D::Vector::from_vec3(Vec3::new(x as f32, y as f32, z as f32))
-    };
+    let vector =
+        |x: f64, y: f64, z: f64| D::Vector::from_vec3(Vec3::new(x as f32, y as f32, z as f32));
     let thickness = if D::N == 3 { THICKNESS } else { 0.0 };
     let (sine, cosine) = case.oblique.to_radians().sin_cos();
     let tip = |height: f64| {

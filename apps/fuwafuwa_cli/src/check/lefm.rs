@@ -9,7 +9,9 @@
 use super::Extent;
 use super::bar::{POISSON, plane_strain};
 use super::parallel;
-use super::plate::{around_one, Intensity, Plate, PlateDim, Pull, Setting, Specimen, TOUGHNESS, WIDTH};
+use super::plate::{
+    Intensity, Plate, PlateDim, Pull, Setting, Specimen, TOUGHNESS, WIDTH, around_one,
+};
 use crate::plot::{Plot, Points};
 use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Context, Result};
@@ -165,10 +167,20 @@ pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
         if group.len() > 2 {
             let sum: f64 = values.iter().map(|value| value.0).sum();
             let mean = sum / values.len() as f64;
-            let most = values.iter().map(|value| value.0).fold(f64::NEG_INFINITY, f64::max);
-            let least = values.iter().map(|value| value.0).fold(f64::INFINITY, f64::min);
+            let most = values
+                .iter()
+                .map(|value| value.0)
+                .fold(f64::NEG_INFINITY, f64::max);
+            let least = values
+                .iter()
+                .map(|value| value.0)
+                .fold(f64::INFINITY, f64::min);
             let row = format!("{name}, spread of K over angles");
-            outcomes.push(Outcome::at_most(row, (most - least) / mean, ANISOTROPY[solid]));
+            outcomes.push(Outcome::at_most(
+                row,
+                (most - least) / mean,
+                ANISOTROPY[solid],
+            ));
         }
     }
     let plot = Plot {

@@ -141,7 +141,11 @@ fn wings(case: &Case, progress: &Progress) -> Result<[f64; 2]> {
     let setting = Setting {
         turned: case.turned,
         strength: super::lefm::STRENGTHS[usize::from(case.is_near)],
-        damping: if case.pose == Pose::Spinning { 0.0 } else { 4.0 },
+        damping: if case.pose == Pose::Spinning {
+            0.0
+        } else {
+            4.0
+        },
         ..Setting::new(case.voxels, 0.3)
     };
     let mut pull = Pull {

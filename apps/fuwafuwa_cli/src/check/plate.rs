@@ -20,8 +20,8 @@ use anyhow::{Result, ensure};
 use fuwafuwa::glam::DVec3;
 use fuwafuwa::inspect::{Elasticity, voxel_around};
 use fuwafuwa::{
-    Blade, Damping, Dim, Dim2, Dim3, DimVector, Event, Grading, Law, Material, NodeId, Point, Rotation, SoftBody,
-    StiffBodies, Vec3, VoxelGrid, World, WorldConfig,
+    Blade, Damping, Dim, Dim2, Dim3, DimVector, Event, Grading, Law, Material, NodeId, Point,
+    Rotation, SoftBody, StiffBodies, Vec3, VoxelGrid, World, WorldConfig,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
@@ -289,11 +289,7 @@ impl<D: PlateDim> Plate<D> {
             body: SoftBody::with_options(grid, &[material], Law::default(), setting.grading)?,
             frame,
             length: specimen.length(),
-            thickness: if D::N == 3 {
-                depth as f64 * voxel
-            } else {
-                1.0
-            },
+            thickness: if D::N == 3 { depth as f64 * voxel } else { 1.0 },
         };
         if let Some(crack) = specimen.crack(setting.growth) {
             plate.cut(crack)?;
@@ -310,9 +306,8 @@ impl<D: PlateDim> Plate<D> {
         } = self.frame;
         let along = DVec3::new(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1], 0.0).normalize();
         let beside = DVec3::new(-along.y, along.x, 0.0) * BESIDE * voxel;
-        let [from, to] = ends.map(|[u, v]| {
-            middle + axes[0] * (u + beside.x) + axes[1] * (v + beside.y)
-        });
+        let [from, to] =
+            ends.map(|[u, v]| middle + axes[0] * (u + beside.x) + axes[1] * (v + beside.y));
         let (below, depth) = (-DVec3::Z * voxel, self.thickness + 2.0 * voxel);
         let blade = D::blade(from + below, to - from, depth);
         let report = self.body.cut(&blade);
@@ -326,9 +321,8 @@ impl<D: PlateDim> Plate<D> {
         // unless they lie at the surface.
         let mut edges: BTreeMap<Point, usize> = BTreeMap::new();
         let grid = self.body.grid();
-        let centre = |[x, y, _]: Point| {
-            DVec3::new(f64::from(x) + 0.5, f64::from(y) + 0.5, 0.0) * voxel
-        };
+        let centre =
+            |[x, y, _]: Point| DVec3::new(f64::from(x) + 0.5, f64::from(y) + 0.5, 0.0) * voxel;
         for low in grid.voxels().filter(|low| low[2] == 0) {
             for axis in 0..2 {
                 let mut high = low;
@@ -423,7 +417,11 @@ impl<D: PlateDim> Plate<D> {
             }
         }
         let moved = statics.solve(&load, vec![0.0; load.len()], progress)?;
-        Ok(load.iter().zip(&moved).map(|(load, moved)| load * moved).sum())
+        Ok(load
+            .iter()
+            .zip(&moved)
+            .map(|(load, moved)| load * moved)
+            .sum())
     }
 }
 
@@ -646,7 +644,8 @@ impl<D: PlateDim> Plate<D> {
         let held = self.held();
         let Self { body, frame, .. } = self;
         let middle = D::Vector::from_vec3(frame.middle.as_vec3());
-        let turn = Rotation::in_plane(-self.setting.turned.to_radians() as f32).then(pull.orientation);
+        let turn =
+            Rotation::in_plane(-self.setting.turned.to_radians() as f32).then(pull.orientation);
         let mut body = body.rotated_about(turn, middle);
         let spin_axis = Vec3::Z * pull.spin as f32;
         let nodes: Vec<_> = body.mesh().nodes().collect();

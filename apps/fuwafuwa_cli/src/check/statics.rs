@@ -138,14 +138,20 @@ impl Statics {
     /// If the iteration does not converge.
     pub fn solve_displaced(&self, given: &[f64], progress: &Progress) -> Result<Vec<f64>> {
         let pairs = given.iter().zip(&self.held);
-        let given: Vec<f64> = pairs.map(|(&u, &held)| if held { u } else { 0.0 }).collect();
+        let given: Vec<f64> = pairs
+            .map(|(&u, &held)| if held { u } else { 0.0 })
+            .collect();
         let mut load = vec![0.0; given.len()];
         self.multiply(&given, &mut load);
         for (load, &held) in load.iter_mut().zip(&self.held) {
             *load = if held { 0.0 } else { -*load };
         }
         let moved = self.solve(&load, vec![0.0; given.len()], progress)?;
-        Ok(moved.iter().zip(&given).map(|(u, given)| u + given).collect())
+        Ok(moved
+            .iter()
+            .zip(&given)
+            .map(|(u, given)| u + given)
+            .collect())
     }
 
     /// Returns the elastic energy of a displacement, with lengths in voxels.
