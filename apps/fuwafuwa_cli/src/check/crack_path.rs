@@ -1,9 +1,9 @@
-//! Path of a crack in a continuum, as the reference of the check of crack paths.
+//! Cracks and slots in a continuum, as references of the checks of crack paths and of blunt slots.
 //!
 //! The displacement discontinuity method [Crouch 1976; Crouch and Starfield 1983, ch. 5] solves for the opening and the
 //! sliding of straight elements along the crack and along the two free sides of a strip in tension. The crack grows in
 //! small steps in the direction of maximal hoop stress [Erdogan and Sih 1963] of the stress intensities at its tip. There
-//! is no lattice and no mesh of the interior, so the path has no preferred direction.
+//! is no lattice and no mesh of the interior, so the path has no preferred direction, and the end of a slot is round.
 
 use anyhow::{Context, Result};
 use std::f64::consts::PI;
@@ -178,6 +178,89 @@ fn solve(elements: &[Element]) -> Result<Vec<f64>> {
     Ok(found)
 }
 
+/// Number of elements of the half circle at the end of a slot. It is odd, so that the root is in the middle of one.
+const ARC: usize = 241;
+/// Length of the elements of a crack whose stress intensity is measured, and of the edges of a slot [m].
+const FINE_STEP: f64 = 0.005;
+/// Number of points over which the tension before a slot is averaged.
+const SAMPLES: usize = 16;
+
+/// Returns the mean vertical tension over a distance before the root of a slot [m], relative to the stress intensity of a
+/// crack as deep as the slot [1/√m]. Both start from the left side of a strip of a width [m] under vertical tension.
+pub fn slot_tension(depth: f64, radius: f64, width: f64, distance: f64) -> Result<f64> {
+    let (edge, side) = (-0.5 * width, 1.2 * width);
+    let right = line([-edge, -side], [-edge, side], SIDE_STEP);
+    // The slot, from below.
+    let middle = edge + depth - radius;
+    let arc: Vec<[f64; 2]> = (0..=ARC)
+        .map(|k| {
+            let (sine, cosine) = (PI * (k as f64 / ARC as f64 - 0.5)).sin_cos();
+            [middle + radius * cosine, radius * sine]
+        })
+        .collect();
+    let parts = [
+        line([edge, -side], [edge, -radius], SIDE_STEP),
+        line([edge, -radius], [middle, -radius], FINE_STEP),
+        arc.windows(2)
+            .map(|ends| Element::between(ends[0], ends[1]))
+            .collect(),
+        line([middle, radius], [edge, radius], FINE_STEP),
+        line([edge, radius], [edge, side], SIDE_STEP),
+        right.clone(),
+    ];
+    let slot = parts.concat();
+    let moved = solve(&slot)?;
+    let at = |k: usize| (k as f64 + 0.5) / SAMPLES as f64 * distance;
+    let tensions = (0..SAMPLES).map(|k| tension(&slot, &moved, [edge + depth + at(k), 0.0]));
+    let mean = tensions.sum::<f64>() / SAMPLES as f64;
+    // The stress intensity is proportional to the opening of the last element before the tip. That of a crack in an
+    // infinite plane is known.
+    let crack = line([edge, 0.0], [edge + depth, 0.0], FINE_STEP);
+    let last = crack.len() - 1;
+    let halves = [[edge, -side], [edge, 0.0], [edge, side]];
+    let left = halves
+        .windows(2)
+        .map(|ends| line(ends[0], ends[1], SIDE_STEP))
+        .collect::<Vec<_>>();
+    let opening = solve(&[crack, left.concat(), right].concat())?[2 * last + 1];
+    let half = 20.0 * FINE_STEP;
+    let known = line([-half, 0.0], [half, 0.0], FINE_STEP);
+    let known_opening = solve(&known)?[2 * known.len() - 1];
+    let intensity = (PI * half).sqrt() * opening / known_opening;
+    Ok(mean / intensity)
+}
+
+/// Returns elements of about the same length [m] along a line.
+fn line(from: [f64; 2], to: [f64; 2], step: f64) -> Vec<Element> {
+    let count = ((to[0] - from[0]).hypot(to[1] - from[1]) / step)
+        .round()
+        .max(1.0);
+    let at = |k: usize| {
+        let share = k as f64 / count;
+        [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
+    };
+    (0..count as usize)
+        .map(|k| Element::between(at(k), at(k + 1)))
+        .collect()
+}
+
+/// Returns the vertical tension at a point under a distant vertical tension of 1.
+fn tension(elements: &[Element], moved: &[f64], at: [f64; 2]) -> f64 {
+    let parts = elements
+        .iter()
+        .zip(moved.chunks_exact(2))
+        .map(|(element, moved)| {
+            let (along, normal) = (element.along[1], element.normal()[1]);
+            let stresses = element.stress(at).into_iter().zip(moved);
+            stresses
+                .map(|([xx, yy, xy], moved)| {
+                    moved * (xx * along * along + yy * normal * normal + 2.0 * xy * along * normal)
+                })
+                .sum::<f64>()
+        });
+    1.0 + parts.sum::<f64>()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -207,5 +290,15 @@ mod tests {
     #[test]
     fn kink_of_pure_shear_is_that_of_erdogan_and_sih() {
         assert!((kink(1e9).to_degrees() + 70.53).abs() < 0.01);
+    }
+
+    #[test]
+    fn tension_before_a_crack_matches_westergaard() {
+        let crack = line([-0.1, 0.0], [0.1, 0.0], 0.002);
+        let moved = solve(&crack).unwrap();
+        let at = 0.12f64;
+        let exact = at / (at * at - 0.01).sqrt();
+        let found = tension(&crack, &moved, [at, 0.0]);
+        assert!((found / exact - 1.0).abs() < 0.02, "{found} {exact}");
     }
 }

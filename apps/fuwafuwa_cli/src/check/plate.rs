@@ -425,38 +425,6 @@ impl<D: PlateDim> Plate<D> {
     }
 }
 
-impl Plate<Dim2> {
-    /// Returns the mean tension along v on the line v = 0 between two places u [m], in a static solution of a uniform mesh
-    /// that is not turned [Pa at an opening of 1 m]. The tension is that of the elements on both sides of the line.
-    pub fn mean_tension(&self, stretched: &Stretched, range: [f64; 2]) -> Result<f64> {
-        let (mesh, voxel) = (self.body.mesh(), self.frame.voxel);
-        let elasticity = self.setting.elasticity();
-        let (lame, shear) = (elasticity.lame(), elasticity.shear_modulus());
-        let (mut sum, mut length) = (0.0, 0.0);
-        for (_, element) in mesh.elements() {
-            let [x, y, _] = mesh.first_voxel(element).map(f64::from);
-            let [u, v] = self.frame.plate(DVec3::new(x, y + 0.5, 0.0) * voxel);
-            let share = (u + voxel).min(range[1]) - u.max(range[0]);
-            if v.abs() > voxel || share <= 0.0 {
-                continue;
-            }
-            // Mean strain of the element, from the displacements of its four corners.
-            let mut strain = [0.0; 2];
-            for &id in &element.nodes {
-                let at = mesh.node(id).at;
-                for (axis, low) in [x, y].into_iter().enumerate() {
-                    let side = if f64::from(at[axis]) > low { 0.5 } else { -0.5 };
-                    strain[axis] += side * stretched.moved[2 * id.index() + axis] / voxel;
-                }
-            }
-            sum += share * (lame * (strain[0] + strain[1]) + 2.0 * shear * strain[1]);
-            length += share;
-        }
-        ensure!(length > 0.0, "no element lies along the line");
-        Ok(sum / length)
-    }
-}
-
 /// Returns whether the segment from one voxel centre to another crosses a crack, both given by their ends.
 fn crosses(crack: [DVec3; 2], centres: [DVec3; 2]) -> bool {
     let side = |[from, to]: [DVec3; 2], at: DVec3| (to - from).cross(at - from).z > 0.0;
