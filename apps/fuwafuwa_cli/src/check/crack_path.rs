@@ -180,7 +180,7 @@ fn solve(elements: &[Element]) -> Result<Vec<f64>> {
 
 /// Number of elements of the half circle at the end of a slot. It is odd, so that the root is in the middle of one.
 const ARC: usize = 241;
-/// Length of the elements of a crack whose stress intensity is measured, and of the edges of a slot [m].
+/// Length of an element of the edges of a slot, and of the crack with which the slot is compared [m].
 const FINE_STEP: f64 = 0.005;
 /// Number of points over which the tension before a slot is averaged.
 const SAMPLES: usize = 16;

@@ -37,7 +37,7 @@ const RANGE: [f64; 2] = [0.15, 0.4];
 /// Thickness of the bar in 3D [m].
 const THICKNESS: f64 = 0.25;
 
-/// One measurement.
+/// Parameters of one measurement.
 #[derive(Copy, Clone, Debug)]
 struct Case {
     dim: usize,

@@ -1,5 +1,5 @@
-//! Linear elastic fracture mechanics: a crack must begin to grow when its stress intensity reaches the toughness, and
-//! its growth must dissipate toughness² (1 − ν²) / E per area, whatever the direction and the size of the voxels.
+//! Linear elastic fracture mechanics: at any direction and size of the voxels, a crack must begin to grow when its stress
+//! intensity reaches the toughness. Its growth must dissipate toughness² (1 − ν²) / E per area.
 //!
 //! 2D is plane strain, and `toughness` is K_Ic in plane strain. Stress intensities come from measured loads, see
 //! [`plate`](super::plate). That reference is itself compared with published factors for ends that can turn freely: the
@@ -84,7 +84,7 @@ impl Pose {
     }
 }
 
-/// One measurement.
+/// Parameters of one measurement.
 #[derive(Copy, Clone, Debug)]
 struct Case {
     dim: usize,
@@ -235,6 +235,8 @@ fn cases(extent: Extent) -> Vec<Case> {
             add(2, specimen, 64, 0.3, false, upright, few);
         }
         add(3, centre, 24, 0.0, false, upright, few);
+        add(3, centre, 24, 0.3, true, upright, &[22.5]);
+        add(3, centre, 32, 0.0, false, upright, &[22.5]);
     }
     for pose in [Pose::Lying, Pose::Turned, Pose::Spinning] {
         add(2, centre, 32, 0.3, false, pose, &[22.5]);

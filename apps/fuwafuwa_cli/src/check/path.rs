@@ -1,4 +1,4 @@
-//! Paths of cracks: a crack must run where the load drives it, whatever the direction of the voxels.
+//! Paths of cracks: at any direction of the voxels, a crack must run where the load drives it.
 //!
 //! The two wings are the nodes that split to the left and to the right of a crack in the centre of a plate. The direction of
 //! a wing is that of the line of least squared distances through its nodes (total least squares). A crack square to the
@@ -26,7 +26,7 @@ const KINK: f64 = 2.0;
 /// Growth of the opening of the grips [1/s], relative to that at failure.
 const RATE: f64 = 0.3;
 
-/// One measurement.
+/// Parameters of one measurement.
 #[derive(Copy, Clone, Debug)]
 struct Case {
     /// Angle of the crack to the line square to the pull [°].

@@ -18,7 +18,7 @@ use super::statics::Statics;
 use crate::report::Progress;
 use anyhow::{Result, ensure};
 use fuwafuwa::glam::DVec3;
-use fuwafuwa::inspect::{Elasticity, voxel_around};
+use fuwafuwa::inspect::{Elasticity, Node, voxel_around};
 use fuwafuwa::{
     Blade, Damping, Dim, Dim2, Dim3, DimVector, Event, Grading, Law, Material, NodeId, Point,
     Rotation, SoftBody, StiffBodies, Vec3, VoxelGrid, World, WorldConfig,
@@ -48,7 +48,8 @@ pub enum Specimen {
     /// Square plate 0.75 m wide with a crack of 0.3125 m from its left edge: two short cantilevers. The grips hold the
     /// corners on the left, so that growth of the crack lowers K.
     Cantilever,
-    /// Strip between grips 0.375 m apart, 1.5 m long, with a crack of 0.5 m: K does not depend on the crack length.
+    /// Strip 1.5 m long and 0.375 m high, held at its upper and lower surface, with a crack of 0.5 m: K does not depend on
+    /// the crack length.
     Strip,
     /// Plate 1 m wide and 2 m high with a crack from its left edge. The grips do not turn.
     WideEdge { length: f64 },
@@ -64,7 +65,7 @@ impl Specimen {
         angle: 0.0,
     };
 
-    /// Height of [`Specimen::Strip`] between its grips [m].
+    /// Height of [`Specimen::Strip`] [m].
     pub const STRIP_HEIGHT: f64 = 0.375;
 
     /// Name in the table.
@@ -85,7 +86,7 @@ impl Specimen {
         match self {
             Self::Centre { .. } | Self::Edge { .. } => [WIDTH, 1.0],
             Self::Cantilever => [0.75, 0.75],
-            Self::Strip => [1.5, Self::STRIP_HEIGHT + 2.0 * GRIP],
+            Self::Strip => [1.5, Self::STRIP_HEIGHT],
             Self::WideEdge { .. } | Self::Slot { .. } => [1.0, 2.0],
         }
     }
@@ -101,10 +102,8 @@ impl Specimen {
                 let [x, y] = [cosine, sine].map(|share| share * (half + growth));
                 Some([[-x, -y], [x, y]])
             }
-            Self::Edge { length } | Self::WideEdge { length } => from_edge(length),
-            Self::Cantilever => from_edge(0.3125),
-            Self::Strip => from_edge(0.5),
             Self::Slot { .. } => None,
+            _ => from_edge(self.length()),
         }
     }
 
@@ -150,10 +149,14 @@ impl Specimen {
         is_inside && !is_slot
     }
 
-    /// Returns the direction in which the grip at a place moves along v: 1, −1, or 0 if there is no grip.
-    fn grip(self, [u, v]: [f64; 2]) -> f64 {
+    /// Returns the direction in which the grip at a place moves along v: 1, −1, or 0 if there is no grip. `voxel` is the
+    /// size of the voxels [m].
+    fn grip(self, [u, v]: [f64; 2], voxel: f64) -> f64 {
         let [width, height] = self.size();
         let is_held = match self {
+            // Grips inside of the strip would end in large elements, and change its height. On average over the steps of a
+            // turned surface, the nodes within half a voxel lie on the nominal surface.
+            Self::Strip => v.abs() > 0.5 * (height - voxel) + 1e-7,
             Self::Cantilever => u < -0.5 * width + GRIP + 1e-7 && v.abs() > GRIP - 1e-7,
             _ => v.abs() > 0.5 * height - GRIP - 1e-7,
         };
@@ -183,7 +186,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// Returns a lattice of so many voxels across 0.5 m, without tears away from crack tips.
+    /// Returns a lattice with a number of voxels across 0.5 m. Its strength excludes failures away from crack tips.
     pub fn new(voxels: usize, poisson: f64) -> Self {
         Self {
             voxels,
@@ -361,10 +364,16 @@ impl<D: PlateDim> Plate<D> {
         Ok(())
     }
 
+    /// Returns the direction in which the grip at a node moves along v; see [`Specimen::grip`].
+    fn grip(&self, node: Node) -> f64 {
+        let place = self.frame.plate_of(node.at);
+        self.specimen.grip(place, self.frame.voxel)
+    }
+
     /// Returns the nodes in grips with the direction in which their grip moves along v.
     fn held(&self) -> Vec<(NodeId, f64)> {
         let nodes = self.body.mesh().nodes();
-        let moves = nodes.map(|(id, node)| (id, self.specimen.grip(self.frame.plate_of(node.at))));
+        let moves = nodes.map(|(id, node)| (id, self.grip(node)));
         moves.filter(|(_, way)| *way != 0.0).collect()
     }
 
@@ -372,7 +381,7 @@ impl<D: PlateDim> Plate<D> {
     pub fn stretched(&self, progress: &Progress) -> Result<Stretched> {
         let mesh = self.body.mesh();
         let statics = Statics::new(mesh, self.setting.elasticity(), |node, _| {
-            self.specimen.grip(self.frame.plate_of(node.at)) != 0.0
+            self.grip(node) != 0.0
         });
         let mut given = vec![0.0; mesh.node_capacity() * D::N];
         for (id, way) in self.held() {
@@ -486,7 +495,7 @@ impl Intensity {
         Ok(coarse?.refined(&fine?))
     }
 
-    /// Computes the compliance on the mesh that the engine uses for so many voxels across 0.5 m.
+    /// Computes the compliance on the graded mesh of the engine, with a number of voxels across 0.5 m.
     pub fn on_graded_mesh(specimen: Specimen, voxels: usize, progress: &Progress) -> Result<Self> {
         let setting = Setting::new(voxels, POISSON);
         Self::on(specimen, setting, |plate| plate.compliance(progress))
@@ -597,7 +606,7 @@ pub struct Course {
 /// State of a plate after a tick.
 #[derive(Copy, Clone, Debug)]
 pub struct State {
-    /// Largest u of a split node so far [m].
+    /// Largest u of all nodes that were split up to the tick [m].
     pub reach: f64,
     /// Work of the grips minus elastic and kinetic energy, per depth [J/m].
     pub dissipated: f64,
