@@ -13,7 +13,7 @@
 //!   only with the root of the size of its voxels.
 //!
 //! ```text
-//!   ▓▓▓▓▓▓▓▓▓▓▓      ▓▓▓▓▓▓▓▓▓▓▓  grip
+//!   ▀▀▀▀▀▀▀▀▀▀▀      ▀▀▀▀▀▀▀▀▀▀▀  grip
 //!   ░░░░░░░░░░░      ░░░░░░░░░░░
 //!   ░░░░░░░░░░░          ╮░░░░░░  slot, 0.31 m deep, ends in a half circle
 //!   ░░░░░░░░░░░      ░░░░░░░░░░░

@@ -217,7 +217,10 @@ fn cases(extent: Extent) -> Vec<Case> {
         for specimen in [centre].into_iter().chain(others) {
             for (voxels, poisson) in [32, 64, 128].into_iter().flat_map(|n| [(n, 0.0), (n, 0.3)]) {
                 add(2, specimen, voxels, poisson, false, upright, all);
-                add(2, specimen, voxels, poisson, true, upright, all);
+                // Cantilevers of low strength break at the ends of their grips.
+                if specimen != Specimen::Cantilever {
+                    add(2, specimen, voxels, poisson, true, upright, all);
+                }
             }
         }
         for (voxels, poisson) in [(24, 0.0), (24, 0.3), (32, 0.0), (32, 0.3)] {

@@ -2,11 +2,11 @@
 //! their load.
 //!
 //! ```text
-//!   ▓▓▓▓▓▓▓▓▓  grip, moves along +v       v
+//!   ▀▀▀▀▀▀▀▀▀  grip, moves along +v       v
 //!   ░░░░░░░░░                             │    The axes u and v belong to the plate.
 //!   ░░░───░░░  crack                      └─ u The lattice of voxels is turned against them.
 //!   ░░░░░░░░░
-//!   ▓▓▓▓▓▓▓▓▓  grip, moves along −v
+//!   ▄▄▄▄▄▄▄▄▄  grip, moves along −v
 //! ```
 //!
 //! A plate starts in static equilibrium at a part of its expected load, so that no vibration adds to the load. The
@@ -28,7 +28,7 @@ use std::ops::RangeInclusive;
 
 /// Width [m] to which the number of voxels across a plate refers.
 pub const WIDTH: f64 = 0.5;
-/// Depth of the grips along the direction of pull [m].
+/// Half of the distance between the grips of [`Specimen::Cantilever`] [m].
 const GRIP: f64 = 0.125;
 /// Young's modulus of the plates [Pa].
 const YOUNG: f64 = 5000.0;
@@ -45,8 +45,8 @@ pub enum Specimen {
     Centre { half: f64, angle: f64 },
     /// Plate 0.5 m wide and 1 m high with a crack from its left edge. The grips do not turn.
     Edge { length: f64 },
-    /// Square plate 0.75 m wide with a crack of 0.3125 m from its left edge: two short cantilevers. The grips hold the
-    /// corners on the left, so that growth of the crack lowers K.
+    /// Square plate 0.75 m wide with a crack of 0.3125 m from its left edge: two short cantilevers. The grips hold
+    /// the left edge beside its middle third, so that growth of the crack lowers K.
     Cantilever,
     /// Strip 1.5 m long and 0.375 m high, held at its upper and lower surface, with a crack of 0.5 m: K does not depend on
     /// the crack length.
@@ -151,14 +151,16 @@ impl Specimen {
 
     /// Returns the direction in which the grip at a place moves along v: 1, −1, or 0 if there is no grip. `voxel` is the
     /// size of the voxels [m].
+    ///
+    /// Grips hold nodes of the surface. Deeper grips would end inside of large elements, and hold less than their depth. On
+    /// average over the steps of a turned surface, the nodes within half a voxel lie on the nominal surface.
     fn grip(self, [u, v]: [f64; 2], voxel: f64) -> f64 {
         let [width, height] = self.size();
         let is_held = match self {
-            // Grips inside of the strip would end in large elements, and change its height. On average over the steps of a
-            // turned surface, the nodes within half a voxel lie on the nominal surface.
-            Self::Strip => v.abs() > 0.5 * (height - voxel) + 1e-7,
-            Self::Cantilever => u < -0.5 * width + GRIP + 1e-7 && v.abs() > GRIP - 1e-7,
-            _ => v.abs() > 0.5 * height - GRIP - 1e-7,
+            Self::Cantilever => {
+                u < -0.5 * (width - voxel) - 1e-7 && v.abs() > GRIP - 0.5 * voxel - 1e-7
+            }
+            _ => v.abs() > 0.5 * (height - voxel) + 1e-7,
         };
         if is_held { v.signum() } else { 0.0 }
     }
