@@ -11,7 +11,8 @@
 //!
 //! A plate starts in static equilibrium at a part of its expected load, so that no vibration adds to the load. The
 //! stress intensity K follows from the measured load F per depth: K = k F, with k = √(E' / 2 · dC/dA) [Irwin 1957].
-//! The compliance C at two crack lengths comes from the static solver on a fine lattice that is not turned.
+//! The compliance C as a function of the crack area A comes from static solutions on fine uniform meshes that are not
+//! turned.
 
 use super::bar::{POISSON, plane_strain};
 use super::statics::Statics;
