@@ -131,8 +131,48 @@ impl Statics {
         Ok(moved)
     }
 
-    /// Computes image = K · moved. Fixed coordinates stay 0.
+    /// Returns the displacement of every coordinate if the fixed coordinates are displaced as in `given` and no load
+    /// acts on the others. Other coordinates of `given` are ignored.
+    ///
+    /// # Errors
+    /// If the iteration does not converge.
+    pub fn solve_displaced(&self, given: &[f64], progress: &Progress) -> Result<Vec<f64>> {
+        let pairs = given.iter().zip(&self.held);
+        let given: Vec<f64> = pairs
+            .map(|(&u, &held)| if held { u } else { 0.0 })
+            .collect();
+        let mut load = vec![0.0; given.len()];
+        self.multiply(&given, &mut load);
+        for (load, &held) in load.iter_mut().zip(&self.held) {
+            *load = if held { 0.0 } else { -*load };
+        }
+        let moved = self.solve(&load, vec![0.0; given.len()], progress)?;
+        Ok(moved
+            .iter()
+            .zip(&given)
+            .map(|(u, given)| u + given)
+            .collect())
+    }
+
+    /// Returns the elastic energy of a displacement, with lengths in voxels.
+    pub fn energy(&self, moved: &[f64]) -> f64 {
+        let mut forces = vec![0.0; moved.len()];
+        self.multiply(moved, &mut forces);
+        0.5 * dot(moved, &forces)
+    }
+
+    /// Computes image = K · moved. Fixed coordinates of the image stay 0.
     fn apply(&self, moved: &[f64], image: &mut [f64]) {
+        self.multiply(moved, image);
+        for (image, &held) in image.iter_mut().zip(&self.held) {
+            if held {
+                *image = 0.0;
+            }
+        }
+    }
+
+    /// Computes image = K · moved for all coordinates.
+    fn multiply(&self, moved: &[f64], image: &mut [f64]) {
         image.fill(0.0);
         let mut local = Vec::new();
         for part in &self.elements {
@@ -149,11 +189,6 @@ impl Statics {
             }
             for (sum, &place) in local.iter().zip(&part.places) {
                 image[place as usize] += sum;
-            }
-        }
-        for (image, &held) in image.iter_mut().zip(&self.held) {
-            if held {
-                *image = 0.0;
             }
         }
     }
