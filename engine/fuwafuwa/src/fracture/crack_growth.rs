@@ -8,9 +8,9 @@
 //! ```
 //!
 //! Each tip remembers its deviation from the path that J asks for, and takes the cut that reduces the
-//! deviation most. A crack *starts* at a smooth surface if the mean tension within the radius
-//! (2/π) (K/σ)² exceeds the strength σ [Taylor 2007]. At that radius, strength and toughness agree: a sharp
-//! notch and a crack fail at the same load. In both cases, the nodal tension of
+//! deviation most. A crack *starts* at a smooth surface if the mean tension within a radius of
+//! 0.5 (K/σ)² exceeds the strength σ [Taylor 2007]. With this radius, a narrow notch and a crack fail at similar
+//! loads, and a notch of any width fails at the same load at every voxel size. In both cases, the nodal tension of
 //! [`nodal_tension`](super::nodal_tension) must pull the cut open. Under [`Law::Endo2004`], the nodal tension
 //! alone decides, as in the paper.
 //!
@@ -30,7 +30,7 @@ use crate::soft_body::SoftBody;
 use crate::soft_body::cooldowns::is_near;
 use crate::soft_body::element_law::Law;
 use glam::Vec3;
-use std::f32::consts::{FRAC_2_PI, SQRT_2};
+use std::f32::consts::SQRT_2;
 
 /// Node that fails, so that its release advances a crack.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -86,14 +86,16 @@ const MAX_CLOSED_SHARE: f32 = 1.2;
 /// Stress intensity at a tip divided by its estimate from |J|, which counts the crack as a little longer than
 /// it is. Measured by `fuwafuwa check lefm`.
 const TIP_FACTOR: [f32; 2] = [0.97, 0.985];
+/// Radius of the mean tension at a surface, relative to (toughness / strength)². The line method of [Taylor 2007]
+/// averages along a line of 2/π, his area method over a half disc with a radius of 1.3/π.
+const STRENGTH_RADIUS: f32 = 0.5;
 /// Smallest and largest radius of the mean tension at a surface [voxels]; the largest in 2D and in 3D. Within
 /// less than a voxel there are too few elements, and with the radius the cost grows.
 const MIN_RADIUS: f32 = 1.0;
 const MAX_RADIUS: [f32; 2] = [8.0, 4.0];
 /// Exponent of the extrapolation of the mean tension to radii below [`MIN_RADIUS`], relative to the slope
-/// between the means within one and two voxels. Elements smooth the stress of a notch, so the slope between
-/// the means is too small.
-const STEEPENING: f32 = 1.4;
+/// between the means within one and two voxels. Measured by `fuwafuwa check grid`, as is [`STRENGTH_RADIUS`].
+const STEEPENING: f32 = 0.65;
 /// Least advance of a cut in the direction of growth [voxels].
 const MIN_ADVANCE: f32 = 0.1;
 /// Least nodal tension of a cut relative to that of the worst cut at the node. With less, cracks in 3D leave many
@@ -250,7 +252,7 @@ fn surface_failure<D: Dim>(
 /// Returns the radius within which the mean tension decides at a smooth surface [m].
 fn strength_radius(material: &Material) -> f32 {
     let ratio = material.toughness / material.strength;
-    FRAC_2_PI * ratio * ratio
+    STRENGTH_RADIUS * ratio * ratio
 }
 
 /// Returns the failure of a node by a cut with the given tension [Pa] and excess.

@@ -117,7 +117,8 @@ impl<'a, D: Dim> NearField<'a, D> {
         let mut volume = 0.0;
         for place in 0..self.near.len() {
             let (id, share) = self.near[place];
-            if share == 0.0 {
+            // Elements in a grip move as a whole and carry no stress, although their surroundings do.
+            if share == 0.0 || self.is_fixed(id) {
                 continue;
             }
             let load = self.load(id);
@@ -171,6 +172,12 @@ impl<'a, D: Dim> NearField<'a, D> {
             }
         }
         self.near.truncate(count);
+    }
+
+    /// Returns whether all nodes of an element are fixed.
+    fn is_fixed(&self, id: ElementId) -> bool {
+        let element = self.body.mesh().element(id);
+        element.is_some_and(|element| element.nodes.iter().all(|&node| self.body.is_fixed(node)))
     }
 
     /// Returns the load of an element.
