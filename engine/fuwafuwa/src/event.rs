@@ -21,7 +21,8 @@ pub enum Event<D: Dim> {
         body: SoftBodyHandle,
         /// Position of the split node [m].
         point: D::Vector,
-        /// Elastic energy that the advancing crack released at the node [J]; 0 for
+        /// Elastic energy that the advancing crack released at the node [J]. At a crack tip, it is the energy
+        /// release rate times the opened area; at a smooth surface, it is estimated from the tension. 0 for
         /// [`World::cut`](crate::World::cut).
         energy: f32,
     },

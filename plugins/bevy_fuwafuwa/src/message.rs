@@ -16,7 +16,8 @@ pub struct NodeSplit {
     pub body: Entity,
     /// Position, world space [m].
     pub point: Vec3,
-    /// Released elastic energy [J]; 0 if the split was an explicit cut.
+    /// Released elastic energy [J]: at a crack tip, the energy release rate times the opened area. 0 if the split
+    /// was an explicit cut.
     pub energy: f32,
 }
 

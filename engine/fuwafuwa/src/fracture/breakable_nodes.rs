@@ -1,4 +1,4 @@
-//! Nodes at which a crack can start or continue, and the possible cuts there.
+//! Nodes at which a crack can start or grow, and the possible cuts there.
 //!
 //! A *breakable node* is shared by several voxels at an open point. Closed faces connect these voxels. A
 //! *cut* opens some of the closed faces across one axis, so that the voxels are divided into two sides.
@@ -30,8 +30,10 @@ pub struct BreakableNode {
     pub material: u8,
     /// Whether the node is a crack tip: some voxels that share it are separated by an open face.
     pub is_tip: bool,
-    /// Tension at which the node begins to take damage [Pa]: toughness / √voxel size at a crack tip, elsewhere the
-    /// strength with its scatter.
+    /// Limit of the tension at the node [Pa]. At a smooth surface, the strength with its scatter: the limit of
+    /// the mean tension. At a crack tip, toughness / √voxel size: a scale for the nodal tension, which is about
+    /// as large when the crack begins to grow, and its limit under
+    /// [`Law::Endo2004`](crate::Law::Endo2004).
     pub threshold: f32,
     /// Index of the node's list of cuts in the list of all patterns of closed faces.
     cuts: u32,

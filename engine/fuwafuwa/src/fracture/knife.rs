@@ -7,11 +7,11 @@
 //! voxels that this area crosses are opened.
 //!
 //! ```text
-//!     force per metre of edge = G + 2 r σ      G = toughness² / Y   [Irwin 1957]
+//!     force per metre of edge = G + 2 r σ      G = toughness² (1 − ν²) / Y   [Irwin 1957]
 //! ```
 //!
-//! G is the fracture energy per square metre of crack, Y Young's modulus, r the radius of the edge, and σ the
-//! strength. The term 2 r σ stands for a strip in front of a dull edge, as wide as the edge, which fails as
+//! G is the [fracture energy](crate::Material::fracture_energy) per square metre of crack, Y Young's modulus, ν
+//! Poisson's ratio, r the radius of the edge, and σ the strength. The term 2 r σ stands for a strip in front of a dull edge, as wide as the edge, which fails as
 //! well [Atkins 2009, ch. 9]. Against sideways motion, the flat of the blade resists with at most σ times its
 //! height, per metre of edge. Material that was cut before does not resist the edge.
 

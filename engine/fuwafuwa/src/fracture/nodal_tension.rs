@@ -10,6 +10,10 @@
 //! ```
 //!
 //! T is the pull across the cut, with the part Tₙ along the normal n of the cut and the part Tₛ in its plane.
+//!
+//! The nodal tension depends on the size and the direction of the voxels. It therefore decides only which cuts
+//! are pulled open, and [`near_field`](super::near_field) decides when a crack starts or grows. Under
+//! [`Law::Endo2004`](crate::Law::Endo2004), the nodal tension decides alone.
 
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::NodeId;

@@ -27,7 +27,7 @@ pub struct Cache {
     pub awake_is_stale: bool,
     /// Mass damping of each node [1/s], by id; empty if all materials in use have the same.
     pub mass_damping: IndexVec<NodeId, f32>,
-    /// Nodes at which a crack can start or continue, with the tension that each withstands.
+    /// Nodes at which a crack can start or continue, with their possible cuts and limits.
     pub breakable: BreakableNodes,
     /// Mask of the exposed faces of each level-0 element: bit 2 · axis + side (0 = low, 1 = high).
     pub exposed_faces: IndexVec<ElementId, u8>,

@@ -27,13 +27,15 @@ use crate::foundation::hash::hash_state;
 use crate::topology::element_class::ElementClass;
 use glam::DVec3;
 
-/// Law of the elastic forces of an element.
+/// Law of the elastic forces of an element, with the criterion by which cracks start and grow.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Law {
-    /// Shape-matching law of [Endo 2004, §3.1], unchanged.
+    /// Shape-matching law of [Endo 2004, §3.1], unchanged. The nodal tension alone decides where a crack starts or
+    /// grows, as in the paper, so that the load and the direction of a crack depend on the voxels.
     Endo2004,
-    /// Corotational virtual element law; exact for every uniform strain, on any graded mesh.
+    /// Corotational virtual element law; exact for every uniform strain, on any graded mesh. A crack grows by its
+    /// energy release rate.
     #[default]
     CorotationalVem,
 }

@@ -29,6 +29,11 @@ const WAKE_DISTANCE: f32 = 1e-3;
 
 /// Grip on a region of a soft body, to add with [`World::add_grip`].
 ///
+/// Elements grow from the surface inwards. If a held region ends inside large elements, which have no nodes
+/// there, the stress beside it is 1.3 to 1.5 times the mean, and a bar breaks there at about 0.84 of strength ×
+/// area (`fuwafuwa check grid`). To avoid this, grip the end faces only, or let the grip end at a multiple of 8
+/// voxels. Elements with all nodes held do not count in the tension that starts a crack.
+///
 /// ```
 /// use fuwafuwa::{
 ///     Dim3, Grip, Material, RigidBody, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig,

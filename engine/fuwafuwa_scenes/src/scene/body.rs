@@ -30,11 +30,11 @@ pub struct MaterialText {
     pub friction: Option<f32>,
     /// Rolling resistance of crumbs [1/s].
     pub rolling_resistance: Option<f32>,
-    /// Tensile strength [Pa].
+    /// Tensile strength of a smooth surface [Pa].
     pub strength: Option<f32>,
-    /// Scatter of the strength, relative to the strength.
+    /// Scatter of the strength, 0 to 10: largest relative amount by which the strength of a point is raised.
     pub strength_scatter: Option<f32>,
-    /// Fracture toughness [Pa √m].
+    /// Fracture toughness in plane strain [Pa √m].
     pub toughness: Option<f32>,
     /// Yield strain, beyond which the deformation is permanent; purely elastic if missing.
     pub yield_strain: Option<f32>,
@@ -118,7 +118,8 @@ pub struct BodyText {
     pub crumbled: bool,
     /// Whether all elements are single voxels, for comparison with graded elements.
     pub uniform: bool,
-    /// Whether the elastic force is that of the paper instead of the corotational virtual element law.
+    /// Whether the elastic force and the criterion of cracks are those of the paper, for figures, instead of the
+    /// corotational virtual element law and the energy release rate.
     pub paper_law: bool,
 }
 
