@@ -237,26 +237,24 @@ impl Case {
 ///
 /// The stiffness of brain in slow tests is 1 to 2 kPa; other soft organs are somewhat stiffer. The cut
 /// energies are rough values, chosen so that a sharp edge cuts before the organ yields by more than a
-/// centimetre. The toughness is the square root of the cut energy times Young's modulus.
+/// centimetre. The toughness K follows from the cut energy: K² (1 − ν²) / Y.
 pub fn tissues(count: usize) -> Vec<Material> {
     // Young's modulus [Pa] and cut energy per area [J/m²].
-    const KINDS: [(f64, f32); 4] = [
+    const KINDS: [(f64, f64); 4] = [
         (2000.0, 8.0),
         (3000.0, 12.0),
         (6000.0, 25.0),
         (4000.0, 80.0),
     ];
     let kinds = KINDS.iter().cycle().take(count.clamp(1, MOST_MATERIALS));
-    let tissue = |&(young, energy): &(f64, f32)| Material {
-        elasticity: Elasticity {
-            young,
-            poisson: 0.4,
-        },
+    let poisson = 0.4;
+    let tissue = |&(young, energy): &(f64, f64)| Material {
+        elasticity: Elasticity { young, poisson },
         density: 1050.0,
         damping: Damping::at(0.3, 8.0),
         friction: 0.1,
         strength: 30_000.0,
-        toughness: (young as f32 * energy).sqrt(),
+        toughness: (young * energy / (1.0 - poisson * poisson)).sqrt() as f32,
         ..Material::default()
     };
     kinds.map(tissue).collect()

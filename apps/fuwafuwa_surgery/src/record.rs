@@ -21,7 +21,7 @@ use std::io::{Read, Write};
 use std::sync::Arc;
 
 /// Format version. It is increased if older recordings would be misread or would replay differently.
-pub const VERSION: u32 = 4;
+pub const VERSION: u32 = 5;
 /// Maximum size of a recording [bytes].
 pub const MOST_BYTES: usize = 1 << 26;
 /// Maximum size of the uncompressed contents [bytes]: the voxels of the finest organ and an hour of inputs.

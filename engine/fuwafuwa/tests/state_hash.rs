@@ -534,7 +534,7 @@ fn world_of_everything<D: Blades>(n: usize) -> World<D> {
 }
 
 /// Ends of paths of stored values that the world must contain, so that the test covers them.
-const COVERED: [&str; 14] = [
+const COVERED: [&str; 15] = [
     "joints.slots.item.attached.1.Position",
     "joints.slots.item.kind.stiffness",
     "knives.slots.item.samples.passed",
@@ -544,6 +544,7 @@ const COVERED: [&str; 14] = [
     "rigids.slots.item.reactions.contact",
     "bodies.slots.item.state.damage",
     "bodies.slots.item.state.cooldowns.points",
+    "bodies.slots.item.state.tip_deviations.at",
     "bodies.slots.item.state.batches.plastic_inverses",
     "bodies.slots.item.topology.mesh.free_nodes",
     "events.ContactForce.point",

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the recording format. It increases when an older recording would run differently or has other
 /// hashes.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 /// Maximum size of a recording [bytes], enough for some hours with two hands.
 pub const MAX_BYTES: u64 = 1 << 26;
 /// Maximum number of ticks in a recording: those of the longest viewing time of a scene, at 60 ticks a

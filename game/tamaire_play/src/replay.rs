@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Version of the replay format and of the rules. A change of either that makes an older round run
 /// differently requires a new version.
-pub const VERSION: u32 = 8;
+pub const VERSION: u32 = 9;
 
 /// Maximum size of a replay [bytes]. Larger replays are rejected.
 pub const MAX_BYTES: usize = 1 << 25;

@@ -156,7 +156,7 @@ enum Which {
     /// Bars and blunt slots must fail at the same load at every resolution. Reference: strength × area; the line method
     /// of the theory of critical distances (Taylor 1999). Not part of `all`.
     Grid,
-    /// A knife must spend the fracture energy. Reference: toughness² / E, and 2 r × strength for a dull edge of radius r.
+    /// A knife must spend the fracture energy. Reference: toughness² (1 − ν²) / E, and 2 r × strength for a dull edge of radius r.
     /// Not part of `all`.
     Knife,
     /// All checks except `lefm`, `path`, `grid` and `knife`.
