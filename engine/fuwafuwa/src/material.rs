@@ -33,8 +33,8 @@ pub struct Material {
     /// Tensile strength of a smooth surface [Pa], default 1000: the tension at which a crack starts; infinite = never
     /// tears. A player can tear a body with a strength of a fifth of Young's modulus by hand.
     ///
-    /// The tension is the mean over the radius 0.5 (toughness / strength)² [Taylor 2007], at least a voxel
-    /// and at most 8 voxels in 2D and 4 in 3D. Below a voxel it is extrapolated. Where the upper limit acts, a
+    /// The tension is the mean over the radius 0.5 (toughness / strength)² [Taylor 2007], at most 8
+    /// voxels in 2D and 4 in 3D. For radii below a voxel it is extrapolated from means within one and two voxels. Where the upper limit acts, a
     /// notch fails at a load that depends on the voxel size. Elements with all nodes fixed do not count.
     pub strength: f32,
     /// Scatter of the strength, 0 to 10, default 0.4: at each lattice point of a smooth surface, the strength is

@@ -203,9 +203,9 @@ mod tests {
         let recording = Recording::of::<Dim2>(&scene, 1, |_| {}).unwrap();
         let text = recording.text().unwrap();
         assert_eq!(Recording::read("mine", &text).unwrap(), recording);
-        let older = text.replacen("version = 2", "version = 1", 1);
+        let older = text.replacen("version = 3", "version = 1", 1);
         let error = Recording::read("mine", &older).unwrap_err().to_string();
-        let expected = "mine: the recording has format 1, this library reads format 2";
+        let expected = "mine: the recording has format 1, this library reads format 3";
         assert_eq!(error, expected);
     }
 

@@ -95,8 +95,8 @@ fn crack_stops_at_unbreakable_core() {
     // body tears soon.
     let changes = [
         "body.n=32",
-        "material.1.strength=250",
-        "material.1.toughness=50",
+        "material.1.strength=200",
+        "material.1.toughness=30",
     ];
     let scene = Scene::open("core", &changes.map(String::from)).unwrap();
     let mut world = scene.build::<Dim2>().unwrap();

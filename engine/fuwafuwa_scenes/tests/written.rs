@@ -392,8 +392,12 @@ fn error_names_line_and_field() {
 fn of_world_keeps_joint_positions_after_motion() {
     let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
     let grid = VoxelGrid::<Dim2>::cube(8, 0.5).unwrap();
+    let unbreakable = Material {
+        strength: f32::INFINITY,
+        ..Material::default()
+    };
     let cube = world
-        .add_soft_body(SoftBody::new(grid, &[Material::default()]).unwrap())
+        .add_soft_body(SoftBody::new(grid, &[unbreakable]).unwrap())
         .unwrap();
     let point = Vec2::new(0.25, 0.5);
     let on_cube = JointAnchor::on(cube, point).within(0.1);

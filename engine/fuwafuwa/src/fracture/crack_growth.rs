@@ -7,7 +7,7 @@
 //! |J| > K² (1 − ν²) / Y
 //! ```
 //!
-//! Each tip remembers its deviation from the path that J asks for, and takes the cut that reduces the
+//! Each tip stores its deviation from the path along J, and takes the cut that reduces the
 //! deviation most. A crack *starts* at a smooth surface if the mean tension within a radius of
 //! 0.5 (K/σ)² exceeds the strength σ [Taylor 2007]. With this radius, a narrow notch and a crack fail at similar
 //! loads, and a notch of any width fails at the same load at every voxel size. In both cases, the nodal tension of
@@ -62,7 +62,7 @@ struct Advance {
     deviation: Vec3,
 }
 
-/// Time until a node fails under 1.5 times its threshold tension [s]. With a shorter time, impacts shatter
+/// Time until a node fails under 1.5 times the load at which it begins to take damage [s]. With a shorter time, impacts shatter
 /// the surface; with a longer one, fast rigid bodies push through without cutting.
 const DAMAGE_TIME: f32 = 0.004;
 /// Time in which a damaged node heals once it is no longer overloaded [s]. It is longer than [`DAMAGE_TIME`],
@@ -83,8 +83,7 @@ const GATE: f32 = 0.6;
 /// Largest load of a tip relative to its nodal tension. It excludes tips that are pressed or sheared: the
 /// energy-release vector counts the energy that a crack would release if its faces did not touch.
 const MAX_CLOSED_SHARE: f32 = 1.2;
-/// Stress intensity at a tip divided by its estimate from |J|, which counts the crack as a little longer than
-/// it is. Measured by `fuwafuwa check lefm`.
+/// Stress intensity estimated from |J| divided by the exact one, in 2D and in 3D. Measured by `fuwafuwa check lefm`.
 const TIP_FACTOR: [f32; 2] = [0.97, 0.985];
 /// Radius of the mean tension at a surface, relative to (toughness / strength)². The line method of [Taylor 2007]
 /// averages along a line of 2/π, his area method over a half disc with a radius of 1.3/π.
@@ -93,6 +92,8 @@ const STRENGTH_RADIUS: f32 = 0.5;
 /// less than a voxel there are too few elements, and with the radius the cost grows.
 const MIN_RADIUS: f32 = 1.0;
 const MAX_RADIUS: [f32; 2] = [8.0, 4.0];
+/// Least radius to which the mean tension is extrapolated [voxels].
+const LEAST_RADIUS: f32 = 1.0 / 64.0;
 /// Exponent of the extrapolation of the mean tension to radii below [`MIN_RADIUS`], relative to the slope
 /// between the means within one and two voxels. Measured by `fuwafuwa check grid`, as is [`STRENGTH_RADIUS`].
 const STEEPENING: f32 = 0.65;
@@ -170,11 +171,11 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
     });
     let cooldown = (COOLDOWN_VOXELS * f64::from(size) / body.fastest_wave()) as f32;
     let chosen = without_worse_neighbour(found);
-    for failure in &chosen {
-        if let Some(Advance { to, deviation, .. }) = failure.advance {
-            body.tip_deviations_mut().advance(failure.at, to, deviation);
-        }
-    }
+    let tips = chosen.iter().rev();
+    let advances = tips.filter_map(|failure| Some((failure.at, failure.advance?)));
+    let advances = advances.map(|(from, advance)| (from, advance.to, advance.deviation));
+    body.tip_deviations_mut()
+        .advance(&advances.collect::<Vec<_>>());
     let cooling = chosen.iter().map(|failure| failure.at);
     body.cooldowns_mut().start(cooling, cooldown);
     chosen
@@ -243,7 +244,7 @@ fn surface_failure<D: Dim>(
             .mean_tension(id, 2.0 * MIN_RADIUS)
             .clamp(tension / SQRT_2, tension);
         let slope = STEEPENING * libm::log2f(tension / wide);
-        tension *= libm::powf(MIN_RADIUS / radius, slope);
+        tension *= libm::powf(MIN_RADIUS / radius.max(LEAST_RADIUS), slope);
     }
     let excess = tension / (node.threshold * crumb_factor(node, &worst.cut));
     (excess > 1.0).then(|| start(body, id, node, tension, excess, worst.cut))
@@ -264,7 +265,7 @@ fn start<D: Dim>(
     excess: f32,
     cut: NodeCut,
 ) -> Failure {
-    let young = material(body, node).elasticity.young as f32;
+    let young = (material(body, node).elasticity.young * body.stiffness_scale()) as f32;
     let size = body.grid().voxel_size();
     let volume = (0..D::N).fold(1.0, |volume, _| volume * size);
     Failure {
@@ -290,7 +291,7 @@ fn tip_failure<D: Dim>(
     let at = body.mesh().node(id).at;
     let size = body.grid().voxel_size();
     let material = material(body, node);
-    let open_excess = MAX_CLOSED_SHARE * worst.excess;
+    let open_excess = MAX_CLOSED_SHARE * worst.tension / node.threshold;
     let others = tips_near::<D>(body, at);
     let front = Front::near::<D>(size, &others);
     let release = near.energy_release(id, &forces.mean_rotation(), front);
@@ -298,6 +299,9 @@ fn tip_failure<D: Dim>(
     // The stiffness scale lowers the stiffness, so that the same stress releases more energy.
     let resistance = material.fracture_energy() / body.stiffness_scale() as f32;
     let mut excess = (rate / resistance).sqrt() / TIP_FACTOR[D::N - 2];
+    if !excess.is_finite() {
+        return None;
+    }
     // A crack that is short compared with the strength radius does not weaken the body.
     let radius = strength_radius(material) / size;
     if excess < 1.0 && radius > MIN_RADIUS && radius.is_finite() {
@@ -316,7 +320,8 @@ fn tip_failure<D: Dim>(
     }
     let to =
         [0, 1, 2].map(|axis: usize| at[axis] + cut.advance[axis].clamp(-1.0, 1.0).round() as i32);
-    let area = f32::from(cut.faces) * face_area::<D>(size);
+    // The tip opens the whole voxel faces ahead of it, of which its neighbours along the front share the rest.
+    let area = 2.0 * f32::from(cut.faces) * face_area::<D>(size);
     Some(Failure {
         node: id,
         at,

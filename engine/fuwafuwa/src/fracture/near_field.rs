@@ -118,7 +118,7 @@ impl<'a, D: Dim> NearField<'a, D> {
         for place in 0..self.near.len() {
             let (id, share) = self.near[place];
             // Elements in a grip move as a whole and carry no stress, although their surroundings do.
-            if share == 0.0 || self.is_fixed(id) {
+            if self.is_fixed(id) {
                 continue;
             }
             let load = self.load(id);
@@ -135,7 +135,7 @@ impl<'a, D: Dim> NearField<'a, D> {
             }
         }
         match volume > 0.0 {
-            true => greatest_eigenvalue::<D>(&sum) / volume,
+            true => greatest_eigenvalue::<D>(&sum.map(|row| row / volume)),
             false => 0.0,
         }
     }
@@ -154,7 +154,10 @@ impl<'a, D: Dim> NearField<'a, D> {
             let Some(owner) = mesh.owner(voxel) else {
                 continue;
             };
-            self.near.push((owner, share(voxel)));
+            let share = share(voxel);
+            if share > 0.0 {
+                self.near.push((owner, share));
+            }
         }
         // The order of the sums must not depend on the ids of elements, so the list keeps the order of the
         // voxels.

@@ -1,7 +1,7 @@
 //! Deviations of crack tips from their ideal paths.
 //!
 //! A crack can advance only along the faces of voxels. A crack in any other direction is a staircase, and a
-//! tip must know how far the staircase has left the ideal path, so that the next step returns to it, as in
+//! tip follows a straight path only on average. So the deviation from the path is stored, and the next step returns to it, as in
 //! the line algorithm of [Bresenham 1965].
 
 use crate::foundation::dim::{Dim, Point};
@@ -48,10 +48,15 @@ impl TipDeviations {
         sum / count.max(1.0)
     }
 
-    /// Moves the tip at `from` to `to`, with a new deviation [voxels].
-    pub fn advance(&mut self, from: Point, to: Point, deviation: Vec3) {
-        self.at.remove(&from);
-        self.at.insert(to, deviation.to_array());
+    /// Moves tips: each entry has the old and the new lattice point of a tip, and its new deviation [voxels]. If
+    /// two tips move to one point, the deviation of the later one counts.
+    pub fn advance(&mut self, tips: &[(Point, Point, Vec3)]) {
+        for (from, ..) in tips {
+            self.at.remove(from);
+        }
+        for &(_, to, deviation) in tips {
+            self.at.insert(to, deviation.to_array());
+        }
     }
 
     /// Removes the deviations at those of `points` that are no longer tips.
@@ -92,11 +97,14 @@ mod tests {
     fn tips_of_one_front_share_their_deviation() {
         let mut deviations = TipDeviations::default();
         let across = |deviation: Vec3| Vec3::Y * deviation.y;
-        deviations.advance([0, 0, 0], [5, 4, 3], Vec3::Y * -0.4);
-        // One step higher, so its deviation from the same plane is 1 higher, apart from an error of 0.2.
-        deviations.advance([0, 0, 0], [5, 5, 4], Vec3::Y * 0.8);
-        // Another crack, three voxels away.
-        deviations.advance([0, 0, 0], [5, 2, 4], Vec3::Y * 0.9);
+        let none = [0, 0, 0];
+        deviations.advance(&[
+            (none, [5, 4, 3], Vec3::Y * -0.4),
+            // One step higher, so its deviation from the same plane is 1 higher, with an error of 0.2.
+            (none, [5, 5, 4], Vec3::Y * 0.8),
+            // Another crack, two voxels lower.
+            (none, [5, 2, 4], Vec3::Y * 0.9),
+        ]);
         let shared = deviations.of_tip::<Dim3>([5, 4, 3], across);
         assert!((shared - Vec3::Y * -0.3).length() < 1e-6, "{shared}");
         let own = deviations.of_tip::<Dim2>([5, 4, 3], across);
@@ -107,10 +115,18 @@ mod tests {
     #[test]
     fn deviations_of_former_tips_are_removed() {
         let mut deviations = TipDeviations::default();
-        deviations.advance([0, 0, 0], [1, 0, 0], Vec3::Y);
-        deviations.advance([0, 0, 0], [2, 0, 0], Vec3::Y);
-        deviations.advance([2, 0, 0], [3, 0, 0], Vec3::Y);
-        deviations.keep_tips([[1, 0, 0], [3, 0, 0]].into_iter(), |at| at == [3, 0, 0]);
+        let none = [0, 0, 0];
+        deviations.advance(&[(none, [1, 0, 0], Vec3::Y), (none, [2, 0, 0], Vec3::Y)]);
+        // The tips move one after the other along one line.
+        deviations.advance(&[
+            ([1, 0, 0], [2, 0, 0], Vec3::Y),
+            ([2, 0, 0], [3, 0, 0], Vec3::Y),
+        ]);
+        assert_eq!(
+            deviations.at.keys().copied().collect::<Vec<_>>(),
+            [[2, 0, 0], [3, 0, 0]]
+        );
+        deviations.keep_tips([[2, 0, 0], [3, 0, 0]].into_iter(), |at| at == [3, 0, 0]);
         assert_eq!(
             deviations.at.keys().copied().collect::<Vec<_>>(),
             [[3, 0, 0]]
