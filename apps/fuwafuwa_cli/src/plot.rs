@@ -80,6 +80,14 @@ impl Points {
             points: points.into_iter().collect(),
         }
     }
+
+    /// Adds a point to the series with a name, or begins this series.
+    pub fn add(series: &mut Vec<Self>, name: String, point: (f64, f64)) {
+        match series.iter_mut().find(|points| points.name == name) {
+            Some(points) => points.points.push(point),
+            None => series.push(Self::new(name, [point])),
+        }
+    }
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result};
 use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::{Damping, Dim2, Material, SoftBody, StiffBodies, Vec2, VoxelGrid, WorldConfig};
+use fuwafuwa::{Damping, Dim, Dim2, Material, SoftBody, StiffBodies, Vec2, VoxelGrid, WorldConfig};
 use std::f64::consts::TAU;
 
 /// Lowest frequency of a bar or ring [Hz]. It sets Young's modulus.
@@ -75,7 +75,7 @@ pub fn plane_strain(elasticity: Elasticity) -> f64 {
 }
 
 /// Returns a configuration with a gravity [m/s²], without sleep, in which no body is scaled.
-pub fn still(gravity: Vec2) -> WorldConfig<Dim2> {
+pub fn still<D: Dim>(gravity: D::Vector) -> WorldConfig<D> {
     WorldConfig {
         gravity,
         sleep: false,

@@ -21,6 +21,7 @@
 //! ```
 
 use super::Extent;
+use super::bar::still;
 use super::crack_path;
 use super::parallel;
 use super::plate::{Intensity, Plate, PlateDim, Pull, Setting, Specimen, TOUGHNESS, around_one};
@@ -30,8 +31,7 @@ use crate::report::{Findings, Outcome, Progress};
 use anyhow::{Context, Result, bail};
 use fuwafuwa::inspect::Node;
 use fuwafuwa::{
-    Damping, Dim, Dim2, Dim3, DimVector, Elasticity, Material, SoftBody, StiffBodies, VoxelGrid,
-    World, WorldConfig,
+    Damping, Dim, Dim2, Dim3, DimVector, Elasticity, Material, SoftBody, VoxelGrid, World,
 };
 use std::f64::consts::PI;
 
@@ -130,7 +130,7 @@ fn whole_bars(
             outcomes.push(Outcome::shown(row, peak));
         }
         let name = format!("{dim}D, whole, grips of {depth} m");
-        add_point(series, name, (voxels as f64, load));
+        Points::add(series, name, (voxels as f64, load));
     }
     Ok(outcomes)
 }
@@ -203,12 +203,7 @@ fn whole_load<D: Dim>(
         .filter_map(|(id, _)| body.element_state(id));
     let stresses = stresses.map(|state| state.stress[0].x);
     let peak = stresses.fold(0.0, f64::max) / (START * f64::from(strength));
-    let mut world = World::<D>::new(WorldConfig {
-        gravity: D::Vector::ZERO,
-        stiff_bodies: StiffBodies::Exact,
-        sleep: false,
-        ..WorldConfig::default()
-    })?;
+    let mut world = World::<D>::new(still(D::Vector::ZERO))?;
     let tick = f64::from(world.config().tick);
     let bar = world.add_soft_body(body)?;
     let mut last = f64::NAN;
@@ -262,7 +257,7 @@ fn slots(
                 around_one(TOLERANCES[1]),
             ));
         }
-        add_point(series, name, (voxels as f64, load / reference));
+        Points::add(series, name, (voxels as f64, load / reference));
     }
     Ok(outcomes)
 }
@@ -304,11 +299,4 @@ fn slot_load<D: PlateDim>(voxels: usize, expected: f64, progress: &Progress) -> 
     };
     let pull = Pull::slow(expected);
     Ok(Plate::<D>::new(SLOT, setting)?.pull(&pull, progress)?.first)
-}
-
-fn add_point(series: &mut Vec<Points>, name: String, point: (f64, f64)) {
-    match series.iter_mut().find(|points| points.name == name) {
-        Some(points) => points.points.push(point),
-        None => series.push(Points::new(name, [point])),
-    }
 }

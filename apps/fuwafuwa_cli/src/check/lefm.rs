@@ -159,10 +159,7 @@ pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
             }
             let point = (turned, *intensity);
             let label = format!("{}D, {}", case.dim, case.specimen.name());
-            match series.iter_mut().find(|series| series.name == label) {
-                Some(series) => series.points.push(point),
-                None => series.push(Points::new(label, [point])),
-            }
+            Points::add(&mut series, label, point);
         }
         if group.len() > 2 {
             let sum: f64 = values.iter().map(|value| value.0).sum();

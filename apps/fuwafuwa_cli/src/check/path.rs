@@ -84,10 +84,7 @@ pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
     }
     let mut points: Vec<Points> = Vec::new();
     for (name, point) in series.into_iter().filter(|(_, point)| point.1.is_finite()) {
-        match points.iter_mut().find(|points| points.name == name) {
-            Some(points) => points.points.push(point),
-            None => points.push(Points::new(name, [point])),
-        }
+        Points::add(&mut points, name, point);
     }
     let plot = Plot {
         x: "angle of the lattice [°]".into(),

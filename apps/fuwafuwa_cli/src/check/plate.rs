@@ -14,7 +14,7 @@
 //! The compliance C as a function of the crack area A comes from static solutions on fine uniform meshes that are not
 //! turned.
 
-use super::bar::{POISSON, plane_strain};
+use super::bar::{POISSON, plane_strain, still};
 use super::statics::Statics;
 use crate::report::Progress;
 use anyhow::{Result, ensure};
@@ -22,7 +22,7 @@ use fuwafuwa::glam::DVec3;
 use fuwafuwa::inspect::{Elasticity, Node, voxel_around};
 use fuwafuwa::{
     Blade, Damping, Dim, Dim2, Dim3, DimVector, Event, Grading, Law, Material, NodeId, Point,
-    Rotation, SoftBody, StiffBodies, Vec3, VoxelGrid, World, WorldConfig,
+    Rotation, SoftBody, Vec3, VoxelGrid, World,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
@@ -649,12 +649,7 @@ impl<D: PlateDim> Plate<D> {
         for &(id, _) in &held {
             body.fix_node(id);
         }
-        let mut world = World::<D>::new(WorldConfig {
-            gravity: D::Vector::ZERO,
-            stiff_bodies: StiffBodies::Exact,
-            sleep: false,
-            ..WorldConfig::default()
-        })?;
+        let mut world = World::<D>::new(still(D::Vector::ZERO))?;
         let tick = f64::from(world.config().tick);
         let handle = world.add_soft_body(body)?;
         let along = turn.apply(frame.axes[1].as_vec3());

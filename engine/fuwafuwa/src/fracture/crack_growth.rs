@@ -62,8 +62,8 @@ struct Advance {
     deviation: Vec3,
 }
 
-/// Time until a node fails under 1.5 times the load at which it begins to take damage [s]. With a shorter time, impacts shatter
-/// the surface; with a longer one, fast rigid bodies push through without cutting.
+/// Time until a node fails under 1.5 times the load at which it begins to take damage [s]. With a shorter
+/// time, impacts shatter the surface; with a longer one, fast rigid bodies push through without cutting.
 const DAMAGE_TIME: f32 = 0.004;
 /// Time in which a damaged node heals once it is no longer overloaded [s]. It is longer than [`DAMAGE_TIME`],
 /// so that oscillating loads can break nodes too.

@@ -382,9 +382,9 @@ mod tests {
     fn williams(material: &Material, [first, second]: Intensities, offset: Vec3) -> Vec3 {
         let shear = material.elasticity.shear_modulus() as f32;
         let kappa = 3.0 - 4.0 * material.elasticity.poisson as f32;
-        let radius = offset.x.hypot(offset.y);
-        let angle = 0.5 * offset.y.atan2(offset.x);
-        let (sine, cosine) = angle.sin_cos();
+        let radius = libm::hypotf(offset.x, offset.y);
+        let angle = 0.5 * libm::atan2f(offset.y, offset.x);
+        let (sine, cosine) = libm::sincosf(angle);
         let open = Vec3::new(
             cosine * (kappa - 1.0 + 2.0 * sine * sine),
             sine * (kappa + 1.0 - 2.0 * cosine * cosine),
@@ -409,11 +409,8 @@ mod tests {
         body.cut(blade);
         let tip_at = [8, 8, if D::N == 2 { 0 } else { 8 }];
         let mesh = body.mesh();
-        let tip = mesh.nodes_at(tip_at, body.connectivity());
-        let tip = tip
-            .filter(|&id| body.breakable_nodes().is_tip(id))
-            .next()
-            .unwrap();
+        let mut tip = mesh.nodes_at(tip_at, body.connectivity());
+        let tip = tip.find(|&id| body.breakable_nodes().is_tip(id)).unwrap();
         let turn = crate::math::rotation::Rotation::in_plane(0.7);
         let nodes: Vec<NodeId> = mesh.nodes().map(|(id, _)| id).collect();
         for id in nodes {
@@ -438,7 +435,7 @@ mod tests {
         let stiffness = material.elasticity.young as f32 / (1.0 - poisson * poisson);
         let exact =
             Vec3::new(first * first + second * second, -2.0 * first * second, 0.0) / stiffness;
-        let angle = release.y.atan2(release.x) - exact.y.atan2(exact.x);
+        let angle = libm::atan2f(release.y, release.x) - libm::atan2f(exact.y, exact.x);
         (release.length() / exact.length(), angle.to_degrees())
     }
 

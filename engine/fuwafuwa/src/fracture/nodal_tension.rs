@@ -33,6 +33,8 @@ pub struct NodalForces {
     total: Row,
     /// Sum of the rotations of the elements around the node.
     rotation: [Vec3; 3],
+    /// Unit normals of the cuts across each axis.
+    normals: [Vec3; 3],
 }
 
 /// Tension of one cut.
@@ -64,6 +66,10 @@ impl NodalForces {
             forces,
             total: forces.into_iter().sum::<Row>(),
             rotation,
+            normals: [0, 1, 2].map(|axis: usize| {
+                let [x, y, z] = rotation.map(|row| row[axis]);
+                Vec3::new(x, y, z).normalize_or_zero()
+            }),
         }
     }
 
@@ -87,9 +93,7 @@ impl NodalForces {
             .map(|octant| self.forces[octant])
             .sum::<Row>();
         let near = self.total - far;
-        let axis = cut.axis as usize;
-        let [x, y, z] = self.rotation.map(|row| row[axis]);
-        let normal = Vec3::new(x, y, z).normalize_or_zero();
+        let normal = self.normals[cut.axis as usize];
         if far.xyz().dot(normal) <= 0.0 || near.xyz().dot(normal) >= 0.0 {
             return None;
         }
