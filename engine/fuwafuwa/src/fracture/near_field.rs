@@ -409,8 +409,11 @@ mod tests {
         body.cut(blade);
         let tip_at = [8, 8, if D::N == 2 { 0 } else { 8 }];
         let mesh = body.mesh();
-        let mut tip = mesh.nodes_at(tip_at, body.connectivity());
-        let tip = tip.find(|&id| body.breakable_nodes().is_tip(id)).unwrap();
+        let is_tip = |id: &NodeId| body.breakable_nodes().is_tip(*id);
+        let tip = mesh
+            .nodes_at(tip_at, body.connectivity())
+            .find(is_tip)
+            .unwrap();
         let turn = crate::math::rotation::Rotation::in_plane(0.7);
         let nodes: Vec<NodeId> = mesh.nodes().map(|(id, _)| id).collect();
         for id in nodes {
