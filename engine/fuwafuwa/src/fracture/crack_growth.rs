@@ -16,11 +16,11 @@
 //!
 //! A node fails if it is overloaded for some milliseconds.
 
-use crate::foundation::dim::{Dim, Point, points_in};
+use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::NodeId;
 use crate::foundation::threads;
 use crate::fracture::breakable_nodes::{BreakableNode, NodeCut};
-use crate::fracture::near_field::{Front, NearField, outer_radius};
+use crate::fracture::near_field::NearField;
 use crate::fracture::nodal_tension::{
     CutTension, NodalForces, crumb_factor, face_area, is_surely_below,
 };
@@ -30,7 +30,6 @@ use crate::soft_body::SoftBody;
 use crate::soft_body::cooldowns::is_near;
 use crate::soft_body::element_law::Law;
 use glam::Vec3;
-use std::f32::consts::SQRT_2;
 
 /// Node that fails, so that its release advances a crack.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -96,7 +95,7 @@ const MAX_RADIUS: [f32; 2] = [8.0, 4.0];
 const LEAST_RADIUS: f32 = 1.0 / 64.0;
 /// Exponent of the extrapolation of the mean tension to radii below [`MIN_RADIUS`], relative to the slope
 /// between the means within one and two voxels. Measured by `fuwafuwa check grid`, as is [`STRENGTH_RADIUS`].
-const STEEPENING: f32 = 0.65;
+const STEEPENING: f32 = 0.6;
 /// Least advance of a cut in the direction of growth [voxels].
 const MIN_ADVANCE: f32 = 0.1;
 /// Least nodal tension of a cut relative to that of the worst cut at the node. With less, cracks in 3D leave many
@@ -119,10 +118,6 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
     }
     let size = body.grid().voxel_size();
     let mut damage = std::mem::take(body.damage_mut());
-    let gate = match body.law() {
-        Law::Endo2004 => 1.0,
-        Law::CorotationalVem => GATE,
-    };
     let found = threads::map(threads::chunks(&mut damage), |(first, damage)| {
         let mut found: Vec<Failure> = Vec::new();
         let mut near = NearField::new(body);
@@ -135,10 +130,15 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
             {
                 continue;
             }
+            let at = body.mesh().node(id).at;
+            if *damage >= 1.0 && body.cooldowns().covers(at) {
+                continue;
+            }
             // A fast test excludes most nodes: those far from failure.
-            let failure = match is_surely_below(simd, body, id, node, gate) {
+            let least = least_tension(body, node);
+            let failure = match is_surely_below(simd, body, id, node, least) {
                 true => None,
-                false => failure(body, &mut near, id, node),
+                false => failure(body, &mut near, id, node, least),
             };
             let Some(failure) = failure else {
                 let healed = *damage - duration / HEALING_TIME;
@@ -203,24 +203,44 @@ fn without_worse_neighbour(found: Vec<Failure>) -> Vec<Failure> {
     chosen
 }
 
-/// Returns the failure of a node, if it is overloaded.
+/// Returns the nodal tension [Pa] below which a node does not fail, apart from the factor for crumbs.
+#[inline(always)]
+fn least_tension<D: Dim>(body: &SoftBody<D>, node: &BreakableNode) -> f32 {
+    match body.law() {
+        Law::Endo2004 => node.threshold,
+        Law::CorotationalVem => GATE * opening_threshold(body, node),
+    }
+}
+
+/// Returns the nodal tension [Pa] that is typical of failure. A short crack in a tough material fails at the strength,
+/// not at the toughness.
+#[inline(always)]
+fn opening_threshold<D: Dim>(body: &SoftBody<D>, node: &BreakableNode) -> f32 {
+    match node.is_tip {
+        true => node.threshold.min(material(body, node).strength),
+        false => node.threshold,
+    }
+}
+
+/// Returns the failure of a node, if it is overloaded. Nodal tensions below `least` [Pa] are not.
 #[inline(never)]
 fn failure<D: Dim>(
     body: &SoftBody<D>,
     near: &mut NearField<D>,
     id: NodeId,
     node: &BreakableNode,
+    least: f32,
 ) -> Option<Failure> {
-    let forces = NodalForces::on(body, id, node);
+    let forces = NodalForces::on(body, id, node, least)?;
+    let worst = forces.worst_cut(body, node, least / node.threshold)?;
     if body.law() == Law::Endo2004 {
         let CutTension {
             tension,
             excess,
             cut,
-        } = forces.worst_cut(body, node, 1.0)?;
+        } = worst;
         return Some(start(body, id, node, tension, excess, cut));
     }
-    let worst = forces.worst_cut(body, node, GATE)?;
     match node.is_tip {
         true => tip_failure(body, near, id, node, &forces, worst),
         false => surface_failure(body, near, id, node, worst),
@@ -237,17 +257,28 @@ fn surface_failure<D: Dim>(
     worst: CutTension,
 ) -> Option<Failure> {
     let radius = strength_radius(material(body, node)) / body.grid().voxel_size();
-    let radius = radius.min(MAX_RADIUS[D::N - 2]);
-    let mut tension = near.mean_tension(id, radius.max(MIN_RADIUS));
-    if radius < MIN_RADIUS && tension > 0.0 {
-        let wide = near
-            .mean_tension(id, 2.0 * MIN_RADIUS)
-            .clamp(tension / SQRT_2, tension);
-        let slope = STEEPENING * libm::log2f(tension / wide);
-        tension *= libm::powf(MIN_RADIUS / radius.max(LEAST_RADIUS), slope);
-    }
+    let tension = tension_within(near, id, radius);
     let excess = tension / (node.threshold * crumb_factor(node, &worst.cut));
     (excess > 1.0).then(|| start(body, id, node, tension, excess, worst.cut))
+}
+
+/// Returns the mean tension [Pa] within `radius` [voxels] of a node. Outside [`MIN_RADIUS`] and [`MAX_RADIUS`], it is
+/// extrapolated.
+fn tension_within<D: Dim>(near: &mut NearField<D>, node: NodeId, radius: f32) -> f32 {
+    let most = MAX_RADIUS[D::N - 2];
+    let known = radius.clamp(MIN_RADIUS, most);
+    let tension = near.mean_tension(node, known);
+    if tension <= 0.0 || radius == known {
+        return tension;
+    }
+    // Near a crack, the mean tension falls with the square root of the radius; no notch is steeper.
+    let slope = |inner: f32, outer: f32| libm::log2f(inner / outer).clamp(0.0, 0.5);
+    if radius < known {
+        let slope = STEEPENING * slope(tension, near.mean_tension(node, 2.0 * known));
+        return tension * libm::powf(known / radius.max(LEAST_RADIUS), slope);
+    }
+    let slope = slope(near.mean_tension(node, 0.5 * known), tension);
+    tension * libm::powf(known / radius, slope)
 }
 
 /// Returns the radius within which the mean tension decides at a smooth surface [m].
@@ -291,10 +322,8 @@ fn tip_failure<D: Dim>(
     let at = body.mesh().node(id).at;
     let size = body.grid().voxel_size();
     let material = material(body, node);
-    let open_excess = MAX_CLOSED_SHARE * worst.tension / node.threshold;
-    let others = tips_near::<D>(body, at);
-    let front = Front::near::<D>(size, &others);
-    let release = near.energy_release(id, &forces.mean_rotation(), front);
+    let open_excess = MAX_CLOSED_SHARE * worst.tension / opening_threshold(body, node);
+    let (release, front) = near.energy_release(id, &forces.mean_rotation());
     let rate = release.length();
     // The stiffness scale lowers the stiffness, so that the same stress releases more energy.
     let resistance = material.fracture_energy() / body.stiffness_scale() as f32;
@@ -305,8 +334,7 @@ fn tip_failure<D: Dim>(
     // A crack that is short compared with the strength radius does not weaken the body.
     let radius = strength_radius(material) / size;
     if excess < 1.0 && radius > MIN_RADIUS && radius.is_finite() {
-        let tension = near.mean_tension(id, radius.min(MAX_RADIUS[D::N - 2]));
-        excess = excess.max(tension / material.strength);
+        excess = excess.max(tension_within(near, id, radius) / material.strength);
     }
     let excess = excess.min(open_excess);
     if excess <= 1.0 {
@@ -376,22 +404,6 @@ fn next_cut<D: Dim>(
         }
     }
     best.map(|(_, cut, deviation)| (cut, deviation))
-}
-
-/// Returns the offsets [voxels] of the other tips within the outer radius of the near field of a tip; empty in
-/// 2D, where a front is a point.
-fn tips_near<D: Dim>(body: &SoftBody<D>, at: Point) -> Vec<Vec3> {
-    if D::N == 2 {
-        return Vec::new();
-    }
-    let radius = outer_radius::<D>();
-    let reach = radius as i32;
-    let near = points_in(at.map(|k| k - reach), at.map(|k| k + reach));
-    let offset = |point: Point| Vec3::from([0, 1, 2].map(|k: usize| (point[k] - at[k]) as f32));
-    let is_tip = |point: Point| point != at && body.has_tip(point);
-    near.filter(|&point| offset(point).length_squared() <= radius * radius && is_tip(point))
-        .map(offset)
-        .collect()
 }
 
 /// Weakest material around a node.

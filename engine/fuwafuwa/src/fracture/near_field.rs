@@ -24,13 +24,15 @@ use glam::Vec3;
 const INNER_RADIUS: f32 = 1.5;
 /// Number of elements whose loads are kept for the fields of neighbouring nodes; a power of two.
 const CACHED: usize = 512;
+/// Place of a load that is not kept.
+const NONE: u32 = u32::MAX;
 /// Volume ratio below which the stress of an element counts as 0. Such an element is crushed, and dividing by
 /// the ratio would make its stress arbitrarily large.
 const MIN_RATIO: f32 = 0.1;
 
 /// Distance from the tip at which the weight q reaches 0 [voxels]. In 3D the radius is smaller, because the
 /// number of elements grows with its cube.
-pub fn outer_radius<D: Dim>() -> f32 {
+fn outer_radius<D: Dim>() -> f32 {
     if D::N == 2 { 3.0 } else { 2.0 }
 }
 
@@ -51,10 +53,16 @@ struct Load {
 /// neighbouring nodes overlap.
 pub struct NearField<'a, D: Dim> {
     body: &'a SoftBody<D>,
-    /// Load of the element with id k at index k modulo [`CACHED`], if it is the last one computed there.
-    loads: Vec<Option<(ElementId, Load)>>,
+    /// Loads computed so far.
+    loads: Vec<(ElementId, Load)>,
+    /// Index in `loads` of the last element with id k at index k modulo [`CACHED`]; [`NONE`] without one.
+    places: Vec<u32>,
+    /// Weight q at each squared distance from the tip [voxels²].
+    weights: Vec<f32>,
     /// Scratch list of the elements near a node, with the volume of their part within a radius [voxels].
     near: Vec<(ElementId, f32)>,
+    /// Scratch list of the offsets of tips [voxels].
+    tips: Vec<Vec3>,
 }
 
 impl<'a, D: Dim> NearField<'a, D> {
@@ -63,18 +71,24 @@ impl<'a, D: Dim> NearField<'a, D> {
         Self {
             body,
             loads: Vec::new(),
+            places: Vec::new(),
+            weights: weights::<D>(),
             near: Vec::new(),
+            tips: Vec::new(),
         }
     }
 
-    /// Returns the energy-release vector [J/m²] at a crack tip, along the axes of the undeformed body.
-    pub fn energy_release(&mut self, tip: NodeId, rotation: &Rows, front: Front) -> Vec3 {
+    /// Returns the energy-release vector [J/m²] at a crack tip, along the axes of the undeformed body, and the
+    /// front through the tip.
+    pub fn energy_release(&mut self, tip: NodeId, rotation: &Rows) -> (Vec3, Front) {
         let body = self.body;
         let (mesh, at) = (body.mesh(), body.mesh().node(tip).at);
         let radius = outer_radius::<D>();
+        let most = (radius * radius) as i32;
         self.gather(tip, radius.ceil() as i32, |_| 1.0);
         let half_voxel = 0.5 * body.grid().voxel_size();
         let mut force = Vec3::ZERO;
+        self.tips.clear();
         for place in 0..self.near.len() {
             let (id, _) = self.near[place];
             let element = mesh
@@ -85,7 +99,14 @@ impl<'a, D: Dim> NearField<'a, D> {
             // V ∇q, in voxel faces times half the width of the element.
             let mut slope = Vec3::ZERO;
             for (&node, gradient) in element.nodes.iter().zip(&class.gradients) {
-                slope += gradient.as_vec3() * weight::<D>(at, mesh.node(node).at);
+                let point = mesh.node(node).at;
+                let (x, y, z) = (point[0] - at[0], point[1] - at[1], point[2] - at[2]);
+                let square = x * x + y * y + z * z;
+                if D::N == 3 && square <= most && body.breakable_nodes().is_tip(node) {
+                    self.tips.push(Vec3::new(x as f32, y as f32, z as f32));
+                }
+                let weight = self.weights.get(square as usize).copied();
+                slope += gradient.as_vec3() * weight.unwrap_or(0.0);
             }
             if slope == Vec3::ZERO {
                 continue;
@@ -100,7 +121,8 @@ impl<'a, D: Dim> NearField<'a, D> {
             }
         }
         (D::N..3).for_each(|axis| force[axis] = 0.0);
-        force / front.length
+        let front = Front::through::<D>(body.grid().voxel_size(), &self.tips);
+        (force / front.length, front)
     }
 
     /// Returns the greatest principal value of the mean Cauchy stress [Pa] within `radius` [voxels] of a node.
@@ -164,8 +186,12 @@ impl<'a, D: Dim> NearField<'a, D> {
         let mut count = 0;
         for place in 0..self.near.len() {
             let (owner, share) = self.near[place];
-            let known = self.near[..count].iter().rposition(|&(id, _)| id == owner);
-            match known {
+            let is_larger = mesh
+                .element(owner)
+                .is_some_and(|element| element.cell.width() > 1);
+            let mut known = self.near[..count].iter();
+            let known = is_larger.then(|| known.rposition(|&(id, _)| id == owner));
+            match known.flatten() {
                 Some(known) => self.near[known].1 += share,
                 None if pieces.of_element(owner) == piece => {
                     self.near[count] = (owner, share);
@@ -185,26 +211,28 @@ impl<'a, D: Dim> NearField<'a, D> {
 
     /// Returns the load of an element.
     fn load(&mut self, id: ElementId) -> Load {
-        if self.loads.is_empty() {
-            self.loads.resize(CACHED, None);
+        if self.places.is_empty() {
+            self.places.resize(CACHED, NONE);
         }
-        let place = id.index() % CACHED;
-        match self.loads[place] {
-            Some((known, load)) if known == id => load,
-            _ => {
-                let load = load_of(self.body, id);
-                self.loads[place] = Some((id, load));
-                load
-            }
+        let place = &mut self.places[id.index() % CACHED];
+        if let Some(&(known, load)) = self.loads.get(*place as usize)
+            && known == id
+        {
+            return load;
         }
+        let load = load_of(self.body, id);
+        *place = self.loads.len() as u32;
+        self.loads.push((id, load));
+        load
     }
 }
 
-/// Returns the weight q of a lattice point, for a tip at another lattice point.
-fn weight<D: Dim>(tip: Point, at: Point) -> f32 {
-    let apart = distance::<D>([0, 1, 2].map(|axis: usize| (at[axis] - tip[axis]) as f32));
+/// Returns the weight q at each squared distance from the tip [voxels²], as far as it is positive.
+fn weights<D: Dim>() -> Vec<f32> {
     let radius = outer_radius::<D>();
-    ((radius - apart) / (radius - INNER_RADIUS)).clamp(0.0, 1.0)
+    let squares = 0..(radius * radius) as u32;
+    let weight = |square: u32| (radius - (square as f32).sqrt()) / (radius - INNER_RADIUS);
+    squares.map(|square| weight(square).min(1.0)).collect()
 }
 
 /// Returns the integral of the weight q over the first `length` of a line through the tip [voxels].
@@ -226,10 +254,10 @@ pub struct Front {
 }
 
 impl Front {
-    /// Returns the front near a tip. `others` are the offsets of the other tips of the body within the outer
-    /// radius [voxels], `size` is the voxel size [m]. The front is taken as a straight line through the tip to
-    /// the farthest of the others, and on the other side as far as tips reach there.
-    pub fn near<D: Dim>(size: f32, others: &[Vec3]) -> Self {
+    /// Returns the front through a tip. `tips` are the offsets of the tips of its piece within the outer radius
+    /// [voxels], `size` is the voxel size [m]. The front is taken as a straight line through the tip to the
+    /// farthest of the others, and on the other side as far as tips reach there.
+    fn through<D: Dim>(size: f32, tips: &[Vec3]) -> Self {
         if D::N == 2 {
             return Self {
                 direction: Vec3::ZERO,
@@ -237,13 +265,13 @@ impl Front {
             };
         }
         let mut far = Vec3::ZERO;
-        for &offset in others {
+        for &offset in tips {
             if offset.length_squared() > far.length_squared() {
                 far = offset;
             }
         }
         let direction = far.normalize_or_zero();
-        let back = others.iter().map(|offset| -offset.dot(direction));
+        let back = tips.iter().map(|offset| -offset.dot(direction));
         let back = back.fold(0.0, f32::max);
         let side = |reach: f32| weight_along::<D>(reach.max(0.5));
         Self {
@@ -430,9 +458,7 @@ mod tests {
         }
         body.apply_forces(1e-9, Vec3::ZERO);
         let rotation = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| turn.inverse().apply(axis));
-        let along = [-2.0, -1.0, 1.0, 2.0].map(|k| Vec3::Z * k);
-        let front = Front::near::<D>(size, &along);
-        let release = NearField::new(&body).energy_release(tip, &rotation, front);
+        let (release, _) = NearField::new(&body).energy_release(tip, &rotation);
         let [first, second] = intensities;
         let poisson = material.elasticity.poisson as f32;
         let stiffness = material.elasticity.young as f32 / (1.0 - poisson * poisson);

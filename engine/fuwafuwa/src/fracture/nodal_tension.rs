@@ -49,28 +49,52 @@ pub struct CutTension {
 }
 
 impl NodalForces {
-    /// Returns the forces of the last substep on a node.
-    pub fn on<D: Dim>(body: &SoftBody<D>, id: NodeId, node: &BreakableNode) -> Self {
+    /// Returns the forces of the last substep on a node. `None` if the tension of every cut through the node is below
+    /// `least` [Pa]: no tension exceeds the pull divided by the area.
+    pub fn on<D: Dim>(
+        body: &SoftBody<D>,
+        id: NodeId,
+        node: &BreakableNode,
+        least: f32,
+    ) -> Option<Self> {
         let mut forces = [Row::ZERO; 8];
         for (octant, force) in octants(node.group).zip(body.element_forces().parts_on(id)) {
             forces[octant] = force;
         }
-        let mut rotation = [Vec3::ZERO; 3];
+        let mut all = Self {
+            forces,
+            total: forces.into_iter().sum::<Row>(),
+            rotation: [Vec3::ZERO; 3],
+            normals: [Vec3::ZERO; 3],
+        };
+        let face = face_area::<D>(body.grid().voxel_size());
+        let may_open = |cut: &NodeCut| {
+            let [far, near] = all.sides(cut);
+            let pull = (far - near) * 0.5;
+            let least = least * f32::from(cut.faces) * face;
+            pull.dot(pull) >= least * least
+        };
+        if !body.breakable_nodes().cuts(node).iter().any(may_open) {
+            return None;
+        }
         for owner in body.mesh().carrier_ids(id) {
             let own = body.element_forces().rotation(owner);
             for row in 0..3 {
-                rotation[row] += own[row];
+                all.rotation[row] += own[row];
             }
         }
-        Self {
-            forces,
-            total: forces.into_iter().sum::<Row>(),
-            rotation,
-            normals: [0, 1, 2].map(|axis: usize| {
-                let [x, y, z] = rotation.map(|row| row[axis]);
-                Vec3::new(x, y, z).normalize_or_zero()
-            }),
-        }
+        all.normals = [0, 1, 2].map(|axis: usize| {
+            let [x, y, z] = all.rotation.map(|row| row[axis]);
+            Vec3::new(x, y, z).normalize_or_zero()
+        });
+        Some(all)
+    }
+
+    /// Returns the forces on the two sides of a cut: on the octants of `cut.side`, and on the others.
+    fn sides(&self, cut: &NodeCut) -> [Row; 2] {
+        let forces = octants(cut.side).map(|octant| self.forces[octant]);
+        let far = forces.sum::<Row>();
+        [far, self.total - far]
     }
 
     /// Returns the mean rotation of the elements around the node, by rows.
@@ -89,10 +113,7 @@ impl NodalForces {
         node: &BreakableNode,
         cut: &NodeCut,
     ) -> Option<CutTension> {
-        let far = octants(cut.side)
-            .map(|octant| self.forces[octant])
-            .sum::<Row>();
-        let near = self.total - far;
+        let [far, near] = self.sides(cut);
         let normal = self.normals[cut.axis as usize];
         if far.xyz().dot(normal) <= 0.0 || near.xyz().dot(normal) >= 0.0 {
             return None;
@@ -132,8 +153,7 @@ pub fn crumb_factor(node: &BreakableNode, cut: &NodeCut) -> f32 {
     if is_crumb { CRUMB_FACTOR } else { 1.0 }
 }
 
-/// Returns whether the tension of every cut through a node is certain to be below `share` of its threshold,
-/// from a bound that is fast to compute. The pull of a cut is at most half the sum of the force magnitudes
+/// Returns whether the tension of every cut through a node is certain to be below `least` [Pa], from a bound that is fast to compute. The pull of a cut is at most half the sum of the force magnitudes
 /// |f| of the n voxels around the node, and (Σ|f|)² ≤ n Σ|f|². The factor 0.2501 is ¼ and a margin for
 /// rounding. The area is that of one face, the least that a cut opens.
 #[inline(always)]
@@ -142,9 +162,9 @@ pub fn is_surely_below<D: Dim, S: Simd>(
     body: &SoftBody<D>,
     id: NodeId,
     node: &BreakableNode,
-    share: f32,
+    least: f32,
 ) -> bool {
-    let threshold = face_area::<D>(body.grid().voxel_size()) * node.threshold * share;
+    let threshold = face_area::<D>(body.grid().voxel_size()) * least;
     let squares = body.element_forces().squares_on(simd, id);
     0.2501 * node.group.count_ones() as f32 * squares <= threshold * threshold
 }

@@ -33,16 +33,18 @@ impl TipDeviations {
         let reach = if D::N == 2 { 0 } else { FRONT_REACH };
         let (mut sum, mut count) = (Vec3::ZERO, 0.0f32);
         let [low, high] = [-reach, reach].map(|reach| tip.map(|k| k + reach));
-        let columns = (low[0]..=high[0]).flat_map(|x| (low[1]..=high[1]).map(move |y| [x, y]));
-        for [x, y] in columns.filter(|_| !self.at.is_empty()) {
-            for (point, &deviation) in self.at.range([x, y, low[2]]..=[x, y, high[2]]) {
-                let offset = Vec3::from([0, 1, 2].map(|k: usize| (tip[k] - point[k]) as f32));
-                let estimate = project(offset + Vec3::from(deviation));
-                // A larger deviation belongs to another crack.
-                if estimate.length() < MAX_DEVIATION {
-                    sum += estimate;
-                    count += 1.0;
-                }
+        // The range also holds points outside the box, because it is sorted by the first axis.
+        for (point, &deviation) in self.at.range(low..=high) {
+            let offset = [0, 1, 2].map(|k: usize| tip[k] - point[k]);
+            if offset.iter().any(|k| k.abs() > reach) {
+                continue;
+            }
+            let offset = Vec3::from(offset.map(|k| k as f32));
+            let estimate = project(offset + Vec3::from(deviation));
+            // A larger deviation belongs to another crack.
+            if estimate.length() < MAX_DEVIATION {
+                sum += estimate;
+                count += 1.0;
             }
         }
         sum / count.max(1.0)

@@ -28,14 +28,14 @@ pub use crate::math::row::Row;
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId};
 use crate::foundation::threads::{self, RowChunk};
-use crate::math::lanes::{Eight, LANES, on_widest_lanes, splat, sum, sum_of_squares};
+use crate::math::lanes::{Eight, LANES, on_widest_lanes, sum, sum_of_squares};
 use crate::math::rotation::Rotation;
 use crate::soft_body::element_law::{Elasticity, Law};
 use crate::soft_body::plasticity::Plasticity;
 use batch::{Batch, BatchKey, GROUP, Group, Shared, VACANT, evaluate_best};
 use fearless_simd::Simd;
 use force_kernel::{Moduli, Scratch};
-use glam::Vec3;
+use glam::{Mat3, Quat, Vec3};
 use plastic_kernel::PlasticFlowLimits;
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
@@ -288,10 +288,8 @@ impl<D: Dim> ElementBatches<D> {
                 Vec3::Z,
             ];
         }
-        on_widest_lanes!(simd => {
-            let matrix = rotation_extraction::matrix_of(simd, turned.map(|part| splat(simd, part)));
-            matrix.map(|row| Vec3::from(row.map(|entry| entry[0])))
-        })
+        let columns = Mat3::from_quat(Quat::from_array(turned));
+        [0, 1, 2].map(|row| columns.row(row))
     }
 
     /// Returns whether a batch contains the element.

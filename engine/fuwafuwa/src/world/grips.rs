@@ -16,7 +16,7 @@ use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
 use crate::math::row::Row;
 use crate::rigid_body::shape::Shape;
-use crate::rigid_body::solid::{Solid, flat};
+use crate::rigid_body::solid::{self, Solid};
 use crate::rigid_body::{MotionType, RigidState, is_within_reach};
 use crate::soft_body::SoftBody;
 use glam::Vec3;
@@ -278,7 +278,7 @@ impl GripState {
             && vectors
                 .into_iter()
                 .chain(places)
-                .all(|vector| vector.is_finite() && flat::<D>(vector) == vector)
+                .all(|vector| vector.is_finite() && solid::flat::<D>(vector) == vector)
     }
 }
 
