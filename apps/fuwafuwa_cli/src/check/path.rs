@@ -7,19 +7,19 @@
 
 use super::crack_path;
 use super::parallel;
-use super::plate::{Plate, Pull, Setting, Specimen, TOUGHNESS, WIDTH};
+use super::plate::{Plate, PlateDim, Pull, Setting, Specimen, TOUGHNESS, WIDTH};
 use super::{Extent, lefm::Pose};
 use crate::plot::{Plot, Points};
 use crate::report::{Findings, Outcome, Progress};
 use anyhow::Result;
-use fuwafuwa::Dim2;
+use fuwafuwa::{Dim2, Dim3};
 use std::f64::consts::PI;
 
 /// Half length of the cracks [m].
 const HALF: f64 = 0.08;
 /// Distance from the centre up to which a wing counts [m]. Beyond it, the ligament is so narrow that the plate bends.
 const END: f64 = 0.23;
-/// Maximum deviation of a wing's direction, for straight and for oblique cracks [°].
+/// Maximum deviation of a wing's direction [°], for straight cracks in 2D, and for oblique cracks and those in 3D.
 const TOLERANCES: [f64; 2] = [4.0, 6.0];
 /// Maximum deviation of the first kink of the reference from that in an infinite plane [°].
 const KINK: f64 = 2.0;
@@ -29,6 +29,8 @@ const RATE: f64 = 0.3;
 /// Parameters of one measurement.
 #[derive(Copy, Clone, Debug)]
 struct Case {
+    /// Number of dimensions.
+    dim: usize,
     /// Angle of the crack to the line square to the pull [°].
     oblique: f64,
     voxels: usize,
@@ -58,10 +60,14 @@ pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
         place.map_or(0.0, |place| direction(&paths[place]))
     };
     let cases = cases(extent);
-    let found = parallel::each(&cases, progress, |case| wings(case, progress))?;
+    let found = parallel::each(&cases, progress, |case| match case.dim {
+        2 => wings::<Dim2>(case, progress),
+        _ => wings::<Dim3>(case, progress),
+    })?;
     let mut series = Vec::new();
     for (case, wings) in cases.iter().zip(found) {
         let Case {
+            dim,
             oblique,
             voxels,
             turned,
@@ -75,11 +81,14 @@ pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
         };
         for (side, direction) in ["left", "right"].into_iter().zip(wings) {
             let row = format!(
-                "path 2D, {name}, n = {voxels}, {strength}{pose}, {turned}°, {side} wing [°]"
+                "path {dim}D, {name}, n = {voxels}, {strength}{pose}, {turned}°, {side} wing [°]"
             );
-            let tolerance = TOLERANCES[usize::from(*oblique != 0.0)];
+            let is_straight = *oblique == 0.0 && *dim == 2;
+            let tolerance = TOLERANCES[usize::from(!is_straight)];
             outcomes.push(Outcome::near(row, direction, wanted, tolerance));
-            series.push((name.clone(), (*turned, direction - wanted)));
+            if *dim == 2 {
+                series.push((name.clone(), (*turned, direction - wanted)));
+            }
         }
     }
     let mut points: Vec<Points> = Vec::new();
@@ -104,6 +113,7 @@ fn cases(extent: Extent) -> Vec<Case> {
     let mut cases = Vec::new();
     let mut add = |oblique, voxels, is_near, pose, angles: &[f64]| {
         cases.extend(angles.iter().map(|&turned| Case {
+            dim: 2,
             oblique,
             voxels,
             turned,
@@ -126,11 +136,20 @@ fn cases(extent: Extent) -> Vec<Case> {
         add(0.0, 64, false, pose, &[22.5]);
         add(30.0, 64, false, pose, &[22.5]);
     }
+    let turned = [0.0, 10.0, 22.5, 35.0, 45.0].into_iter();
+    cases.extend(turned.map(|turned| Case {
+        dim: 3,
+        oblique: 0.0,
+        voxels: 32,
+        turned,
+        is_near: false,
+        pose: Pose::Upright,
+    }));
     cases
 }
 
 /// Tears a plate, and returns the directions of its left and its right wing [°].
-fn wings(case: &Case, progress: &Progress) -> Result<[f64; 2]> {
+fn wings<D: PlateDim>(case: &Case, progress: &Progress) -> Result<[f64; 2]> {
     let specimen = Specimen::Centre {
         half: HALF,
         angle: case.oblique,
@@ -152,8 +171,8 @@ fn wings(case: &Case, progress: &Progress) -> Result<[f64; 2]> {
         most: 2.5,
         ..Pull::slow(TOUGHNESS * WIDTH / (PI * HALF).sqrt())
     };
-    case.pose.apply::<Dim2>(&mut pull);
-    let course = Plate::<Dim2>::new(specimen, setting)?.pull(&pull, progress)?;
+    case.pose.apply::<D>(&mut pull);
+    let course = Plate::<D>::new(specimen, setting)?.pull(&pull, progress)?;
     let tip = HALF * case.oblique.to_radians().cos();
     Ok([-1.0, 1.0].map(|side| {
         let beyond = |at: &&[f64; 2]| (tip..END).contains(&(side * at[0]));

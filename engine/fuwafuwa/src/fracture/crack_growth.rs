@@ -7,8 +7,8 @@
 //! |J| > K² (1 − ν²) / Y
 //! ```
 //!
-//! Each tip stores its deviation from the path along J, and takes the cut that reduces the
-//! deviation most. A crack *starts* at a smooth surface if the mean tension within a radius of
+//! Each tip stores its deviation from the path along J. Of the possible cuts it takes one that leaves little
+//! deviation and is pulled well. A crack *starts* at a smooth surface if the mean tension within a radius of
 //! 0.5 (K/σ)² exceeds the strength σ [Taylor 2007]. With this radius, a narrow notch and a crack fail at similar
 //! loads, and a notch of any width fails at the same load at every voxel size. In both cases, the nodal tension of
 //! [`nodal_tension`](super::nodal_tension) must pull the cut open. Under [`Law::Endo2004`], the nodal tension
@@ -98,9 +98,10 @@ const LEAST_RADIUS: f32 = 1.0 / 64.0;
 const STEEPENING: f32 = 0.6;
 /// Least advance of a cut in the direction of growth [voxels].
 const MIN_ADVANCE: f32 = 0.1;
-/// Least nodal tension of a cut relative to that of the worst cut at the node. With less, cracks in 3D leave many
-/// crumbs; with more, they follow the voxels: from 0.45, the direction of a crack at 10° to them is lost.
-const MIN_SHARE: f32 = 0.4;
+/// Deviation that a tip accepts in order to take the cut with the highest nodal tension instead of one with none
+/// [voxels], in 2D and in 3D. With less, cracks in 3D are ragged and leave many crumbs; with more, they follow the
+/// voxels.
+const PULL_WEIGHT: [f32; 2] = [1.0, 2.0];
 /// Least cosine of the angle between the direction of growth and the advance of the worst cut. No crack turns
 /// by more than 71° in one step, the angle in pure shear [Erdogan and Sih 1963], but near contacts and in rubble J
 /// can point anywhere.
@@ -365,7 +366,7 @@ fn tip_failure<D: Dim>(
     })
 }
 
-/// Returns the cut that keeps a tip closest to its ideal path, and its deviation after the cut. `direction` is
+/// Returns the cut that keeps a tip close to its ideal path and is pulled well, and the deviation after it. `direction` is
 /// that of growth, `along` that of the front, both as unit vectors or zero. `worst` is the cut with the highest
 /// nodal tension; it is taken if the direction is implausible.
 fn next_cut<D: Dim>(
@@ -392,15 +393,16 @@ fn next_cut<D: Dim>(
     let mut best: Option<(f32, NodeCut, Vec3)> = None;
     for cut in body.breakable_nodes().cuts(node) {
         let step = Vec3::from(cut.advance);
-        let tension = forces.tension(body, node, cut);
-        let is_pulled = tension.is_some_and(|tension| tension.excess >= MIN_SHARE * worst.excess);
-        if !is_pulled || step.dot(direction) < MIN_ADVANCE {
+        let Some(tension) = forces.tension(body, node, cut) else {
+            continue;
+        };
+        if step.dot(direction) < MIN_ADVANCE {
             continue;
         }
         let deviation = project(before + step);
-        let apart = deviation.length();
-        if best.is_none_or(|(least, ..)| apart < least - 1e-6) {
-            best = Some((apart, *cut, deviation));
+        let cost = deviation.length() - PULL_WEIGHT[D::N - 2] * tension.excess / worst.excess;
+        if best.is_none_or(|(least, ..)| cost < least - 1e-6) {
+            best = Some((cost, *cut, deviation));
         }
     }
     best.map(|(_, cut, deviation)| (cut, deviation))
