@@ -33,9 +33,8 @@ pub struct Material {
     /// Tensile strength of a smooth surface [Pa], default 1000: the tension at which a crack starts; infinite = never
     /// tears. A player can tear a body with a strength of a fifth of Young's modulus by hand.
     ///
-    /// The tension is the mean over the radius 0.5 (toughness / strength)² [Taylor 2007], at most 8
-    /// voxels in 2D and 4 in 3D. For radii below a voxel it is extrapolated from means within one and two voxels. Where the upper limit acts, a
-    /// notch fails at a load that depends on the voxel size. Elements with all nodes fixed do not count.
+    /// The tension is the mean over the radius 0.5 (toughness / strength)² [Taylor 2007]. For radii below a voxel, and
+    /// above 8 voxels in 2D or 4 in 3D, it is extrapolated. Elements with all nodes fixed do not count.
     pub strength: f32,
     /// Scatter of the strength, 0 to 10, default 0.4: at each lattice point of a smooth surface, the strength is
     /// raised by a fixed pseudo-random part, at most by this factor. With 0, a row of equally loaded points fails
@@ -45,7 +44,7 @@ pub struct Material {
     /// grow. A crack grows as soon as its energy release rate exceeds the [fracture
     /// energy](Self::fracture_energy), in the direction that releases most energy [Griffith 1921]. Neither depends
     /// on the size or the direction of the voxels. In 2D, cracks grow within 3 % of this toughness, in 3D within
-    /// 12 % (`fuwafuwa check lefm`). In 3D, their direction is less exact than in 2D.
+    /// 12 % (`fuwafuwa check lefm`).
     ///
     /// Rule of thumb, with toughness in Pa √m and strength in Pa: at toughness = 0.15 strength, a crack that
     /// has started keeps running; at toughness = 0.4 strength, cracks stop near the surface.

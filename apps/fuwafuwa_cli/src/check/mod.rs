@@ -148,18 +148,18 @@ enum Which {
     TurekHron,
     /// Cracks must grow when their stress intensity reaches the toughness, at any resolution and direction of the voxels,
     /// and dissipate toughness² (1 − ν²) / E per area. Reference: K by energy release from static solutions, compared
-    /// with the factors of Tada and Feddersen. Not part of `all`.
+    /// with the factors of Tada and Feddersen.
     Lefm,
     /// Cracks must follow the load and not the grid. Reference: square to the load for straight cracks; displacement
-    /// discontinuities (Crouch 1976) with maximal hoop stress (Erdogan and Sih 1963) for oblique ones. Not part of `all`.
+    /// discontinuities (Crouch 1976) with maximal hoop stress (Erdogan and Sih 1963) for oblique ones.
     Path,
     /// Bars and blunt slots must fail at the same load at every resolution. Reference: strength × area; the line method
-    /// of the theory of critical distances (Taylor 1999). Not part of `all`.
+    /// of the theory of critical distances (Taylor 1999).
     Grid,
     /// A knife must spend the fracture energy. Reference: toughness² (1 − ν²) / E, and 2 r × strength for a dull edge of radius r.
-    /// Not part of `all`.
+    ///
     Knife,
-    /// All checks except `lefm`, `path`, `grid` and `knife`.
+    /// All checks.
     All,
 }
 
@@ -172,46 +172,40 @@ enum Extent {
     Full,
 }
 
-type Check = fn(&Progress) -> Result<Findings>;
-type Runnable = Box<dyn Fn(&Progress) -> Result<Findings> + Sync>;
-type FractureCheck = fn(&Progress, Extent) -> Result<Findings>;
+type Check = fn(&Progress, Extent) -> Result<Findings>;
 
-/// Checks of fracture, which `all` leaves out.
-const FRACTURE_CHECKS: [(Which, FractureCheck); 4] = [
+/// All checks, in the order of their output.
+const CHECKS: [(Which, Check); 30] = [
+    (Which::Patch, |progress, _| patch::check(progress)),
+    (Which::Beam, |progress, _| beam::check(progress)),
+    (Which::Sag, |progress, _| sag::check(progress)),
+    (Which::Period, |progress, _| period::check(progress)),
+    (Which::Damping, |progress, _| damping::check(progress)),
+    (Which::Spin, |progress, _| spin::check(progress)),
+    (Which::Momentum, |progress, _| momentum::check(progress)),
+    (Which::Tear, |progress, _| tear::check(progress)),
+    (Which::Pile, |progress, _| pile::check(progress)),
+    (Which::Stack, |progress, _| stack::check(progress)),
+    (Which::Heap, |progress, _| heap::check(progress)),
+    (Which::Slow, |progress, _| slow::check(progress)),
+    (Which::Sphere, |progress, _| sphere::check(progress)),
+    (Which::Slope, |progress, _| slope::check(progress)),
+    (Which::Doughnut, |progress, _| doughnut::check(progress)),
+    (Which::FreeFall, |progress, _| free_fall::check(progress)),
+    (Which::Impact, |progress, _| impact::check(progress)),
+    (Which::Far, |progress, _| far::check(progress)),
+    (Which::Reaction, |progress, _| reaction::check(progress)),
+    (Which::Overlap, |progress, _| overlap::check(progress)),
+    (Which::Scale, |progress, _| scale::check(progress)),
+    (Which::Bounce, |progress, _| bounce::check(progress)),
+    (Which::Elastica, |progress, _| elastica::check(progress)),
+    (Which::Greenhill, |progress, _| greenhill::check(progress)),
+    (Which::Ring, |progress, _| ring::check(progress)),
+    (Which::TurekHron, |progress, _| turek_hron::check(progress)),
     (Which::Lefm, lefm::check),
     (Which::Path, path::check),
     (Which::Grid, grid::check),
     (Which::Knife, knife::check),
-];
-
-/// All checks, in the order of their output.
-const CHECKS: [(Which, Check); 26] = [
-    (Which::Patch, patch::check),
-    (Which::Beam, beam::check),
-    (Which::Sag, sag::check),
-    (Which::Period, period::check),
-    (Which::Damping, damping::check),
-    (Which::Spin, spin::check),
-    (Which::Momentum, momentum::check),
-    (Which::Tear, tear::check),
-    (Which::Pile, pile::check),
-    (Which::Stack, stack::check),
-    (Which::Heap, heap::check),
-    (Which::Slow, slow::check),
-    (Which::Sphere, sphere::check),
-    (Which::Slope, slope::check),
-    (Which::Doughnut, doughnut::check),
-    (Which::FreeFall, free_fall::check),
-    (Which::Impact, impact::check),
-    (Which::Far, far::check),
-    (Which::Reaction, reaction::check),
-    (Which::Overlap, overlap::check),
-    (Which::Scale, scale::check),
-    (Which::Bounce, bounce::check),
-    (Which::Elastica, elastica::check),
-    (Which::Greenhill, greenhill::check),
-    (Which::Ring, ring::check),
-    (Which::TurekHron, turek_hron::check),
 ];
 
 /// Runs the checks and prints their outcomes.
@@ -221,15 +215,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         true => Extent::Full,
         false => Extent::Usual,
     };
-    let usual = CHECKS.into_iter().filter(|(which, _)| is_chosen(*which));
-    let usual = usual.map(|(which, check)| (which, Box::new(check) as Runnable));
-    let of_fracture = { FRACTURE_CHECKS.into_iter() }
-        .filter(|(which, _)| arguments.which == *which)
-        .map(|(which, check)| {
-            let check = move |progress: &Progress| check(progress, extent);
-            (which, Box::new(check) as Runnable)
-        });
-    let checks: Vec<(Which, Runnable)> = usual.chain(of_fracture).collect();
+    let checks: Vec<(Which, Check)> = CHECKS
+        .into_iter()
+        .filter(|(which, _)| is_chosen(*which))
+        .collect();
     if let Some(path) = &arguments.report {
         ensure!(
             arguments.which == Which::All,
@@ -239,7 +228,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     }
     let progress = Progress::new();
     let mut sections = Vec::new();
-    run_all(&checks, &progress, |which, findings| {
+    run_all(&checks, extent, &progress, |which, findings| {
         if !arguments.json {
             let table = report::outcome_table(&findings.outcomes);
             let gap = if sections.is_empty() { "" } else { "\n" };
@@ -290,7 +279,8 @@ impl Which {
 /// Runs checks on all threads. `done` receives the findings of each check in the order of the checks, as soon as all
 /// checks before it are done. After an error, no further check begins.
 fn run_all(
-    checks: &[(Which, Runnable)],
+    checks: &[(Which, Check)],
+    extent: Extent,
     progress: &Progress,
     mut done: impl FnMut(Which, Findings) -> Result<()>,
 ) -> Result<()> {
@@ -307,7 +297,7 @@ fn run_all(
                     let Some((_, check)) = checks.get(index) else {
                         break;
                     };
-                    let found = check(progress);
+                    let found = check(progress, extent);
                     progress.step();
                     if found.is_err() {
                         next.store(checks.len(), Ordering::Relaxed);

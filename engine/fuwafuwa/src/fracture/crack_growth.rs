@@ -416,6 +416,49 @@ fn material<'a, D: Dim>(body: &'a SoftBody<D>, node: &BreakableNode) -> &'a Mate
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::foundation::dim::{Dim2, Dim3};
+    use crate::fracture::near_field::tests::{Cracked, Intensities, cracked};
+    use crate::math::rotation::Rotation;
+    use std::f32::consts::PI;
+
+    /// Returns the failure of the tip of a crack along the first axis, under intensities relative to the toughness.
+    fn growth<D: Cracked>(intensities: Intensities, turn: f32) -> Option<Failure> {
+        let material = Material {
+            toughness: 5.0,
+            ..Material::default()
+        };
+        let intensities = intensities.map(|intensity| intensity * material.toughness);
+        let (body, tip) = cracked::<D>(&material, intensities, Rotation::in_plane(turn));
+        let place = tip.index();
+        let mut nodes = body.breakable_nodes().among(place..place + 1);
+        let (id, node) = nodes.next().unwrap();
+        let least = least_tension(&body, node);
+        failure(&body, &mut NearField::new(&body), id, node, least)
+    }
+
+    /// Checks growth under 1.2 and 0.8 of the toughness, with a turned body.
+    fn check_growth<D: Cracked>() {
+        for turn in [0.0, 0.7, PI] {
+            assert_eq!(growth::<D>([0.8, 0.0], turn), None);
+            assert_eq!(growth::<D>([-1.2, 0.0], turn), None);
+            let failure = growth::<D>([1.2, 0.0], turn).unwrap();
+            let advance = failure.advance.unwrap();
+            assert!((failure.excess - 1.2).abs() < 0.1, "{failure:?}");
+            assert!(advance.direction.x > 0.99, "{failure:?}");
+            assert_eq!(advance.to[0], failure.at[0] + 1, "{failure:?}");
+            // A shear turns the crack to the side where it opens.
+            for (shear, side) in [(0.8, -1.0), (-0.8, 1.0)] {
+                let advance = growth::<D>([1.2, shear], turn).unwrap().advance.unwrap();
+                assert!(side * advance.direction.y > 0.5, "{advance:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn crack_grows_along_its_load_above_its_toughness() {
+        check_growth::<Dim2>();
+        check_growth::<Dim3>();
+    }
 
     #[test]
     fn without_worse_neighbour_keeps_front_of_crack_together() {

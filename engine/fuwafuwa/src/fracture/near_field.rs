@@ -395,15 +395,35 @@ fn distance<D: Dim>(offset: [f32; 3]) -> f32 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3, DimVector};
     use crate::fracture::blade::Blade;
     use crate::material::Material;
+    use crate::math::rotation::Rotation;
     use crate::topology::grid::VoxelGrid;
+    use glam::Vec2;
+
+    /// Dimension in which a crack can be cut.
+    pub trait Cracked: Dim {
+        /// Returns a blade from the first side of a cube 1 m wide to its middle.
+        fn crack() -> Blade<Self>;
+    }
+
+    impl Cracked for Dim2 {
+        fn crack() -> Blade<Self> {
+            Blade::segment(Vec2::new(-0.1, 0.501), Vec2::new(0.49, 0.501))
+        }
+    }
+
+    impl Cracked for Dim3 {
+        fn crack() -> Blade<Self> {
+            Blade::parallelogram(Vec3::new(-0.1, 0.501, -0.1), Vec3::X * 0.59, Vec3::Z * 1.2)
+        }
+    }
 
     /// Mode I and mode II stress intensities [Pa √m].
-    type Intensities = [f32; 2];
+    pub type Intensities = [f32; 2];
 
     /// Displacement [m] near a crack tip in plane strain, from the offset to the tip [m] [Williams 1957]. The
     /// crack runs along the first axis, towards positive values.
@@ -427,36 +447,45 @@ mod tests {
         (open * first + slide * second) * scale
     }
 
-    /// Places the nodes of a cracked body in the field of [`williams`], turns the body, and returns J divided
-    /// by its exact value, and the error of its direction [degrees].
-    fn check_release<D: Dim>(blade: &Blade<D>, depth: f32, intensities: Intensities) -> (f32, f32) {
-        let material = Material::default();
+    /// Returns a body with a crack in the field of [`williams`], turned by `turn`, and a tip of the crack.
+    pub fn cracked<D: Cracked>(
+        material: &Material,
+        intensities: Intensities,
+        turn: Rotation,
+    ) -> (SoftBody<D>, NodeId) {
         let (n, size) = (16, 1.0 / 16.0);
         let grid = VoxelGrid::<D>::cube(n, 1.0).unwrap();
-        let mut body = SoftBody::new(grid, &[material]).unwrap();
-        body.cut(blade);
-        let tip_at = [8, 8, if D::N == 2 { 0 } else { 8 }];
+        let mut body = SoftBody::new(grid, &[*material]).unwrap();
+        body.cut(&D::crack());
+        let depth = if D::N == 2 { 0 } else { 8 };
+        let tip_at = [8, 8, depth];
         let mesh = body.mesh();
         let is_tip = |id: &NodeId| body.breakable_nodes().is_tip(*id);
         let tip = mesh
             .nodes_at(tip_at, body.connectivity())
             .find(is_tip)
             .unwrap();
-        let turn = crate::math::rotation::Rotation::in_plane(0.7);
         let nodes: Vec<NodeId> = mesh.nodes().map(|(id, _)| id).collect();
         for id in nodes {
             let at = Vec3::from(body.mesh().node(id).at.map(|k| k as f32 * size));
-            let mut offset = at - Vec3::new(0.5, 0.5, depth);
+            let mut offset = at - Vec3::new(0.5, 0.5, depth as f32 * size);
             if offset.y == 0.0 && offset.x < 0.0 {
                 // Nodes of the two crack faces, which the voxels of the node tell apart.
                 let is_upper = body.mesh().node(id).group & 0b0011_0011 == 0;
                 offset.y = if is_upper { 1e-7 } else { -1e-7 };
             }
-            let moved = turn.apply(at + williams(&material, intensities, offset));
+            let moved = turn.apply(at + williams(material, intensities, offset));
             body.set_node_state(id, D::Vector::from_vec3(moved), D::Vector::ZERO)
                 .unwrap();
         }
         body.apply_forces(1e-9, Vec3::ZERO);
+        (body, tip)
+    }
+
+    /// Returns J at the tip of a crack divided by its exact value, and the error of its direction [degrees].
+    fn check_release<D: Cracked>(intensities: Intensities) -> (f32, f32) {
+        let (material, turn) = (Material::default(), Rotation::in_plane(0.7));
+        let (body, tip) = cracked::<D>(&material, intensities, turn);
         let rotation = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| turn.inverse().apply(axis));
         let (release, _) = NearField::new(&body).energy_release(tip, &rotation);
         let [first, second] = intensities;
@@ -471,19 +500,48 @@ mod tests {
     #[test]
     fn energy_release_matches_field_of_williams() {
         for intensities in [[5.0, 0.0], [5.0, 1.0], [5.0, -2.5]] {
-            let blade = Blade::segment(glam::Vec2::new(-0.1, 0.501), glam::Vec2::new(0.49, 0.501));
-            let (ratio, angle) = check_release::<Dim2>(&blade, 0.0, intensities);
+            let (ratio, angle) = check_release::<Dim2>(intensities);
             assert!(
                 (ratio - 1.0).abs() < 0.08 && angle.abs() < 3.0,
                 "{ratio} {angle}"
             );
-            let blade =
-                Blade::parallelogram(Vec3::new(-0.1, 0.501, -0.1), Vec3::X * 0.59, Vec3::Z * 1.2);
-            let (ratio, angle) = check_release::<Dim3>(&blade, 0.0, intensities);
+            let (ratio, angle) = check_release::<Dim3>(intensities);
             assert!(
                 (ratio - 1.0).abs() < 0.15 && angle.abs() < 5.0,
                 "{ratio} {angle}"
             );
+        }
+    }
+
+    /// Stretches a body along its first axis, and returns the mean tensions around a node at its surface within
+    /// one and two voxels, divided by the uniform stress.
+    fn check_tension<D: Cracked>() -> [f32; 2] {
+        let material = Material::default();
+        let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();
+        let mut body = SoftBody::new(grid, &[material]).unwrap();
+        let strain = 1e-3;
+        let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
+        for id in nodes {
+            let mut at = Vec3::from(body.mesh().node(id).at.map(|k| k as f32 / 8.0));
+            at.x *= 1.0 + strain;
+            body.set_node_state(id, D::Vector::from_vec3(at), D::Vector::ZERO)
+                .unwrap();
+        }
+        body.apply_forces(1e-9, Vec3::ZERO);
+        let at = [4, 8, if D::N == 2 { 0 } else { 4 }];
+        let mesh = body.mesh();
+        let node = mesh.nodes_at(at, body.connectivity()).next().unwrap();
+        let elasticity = material.elasticity;
+        // Uniaxial strain, because the sides do not contract.
+        let stress = (elasticity.lame() + 2.0 * elasticity.shear_modulus()) as f32 * strain;
+        let mut near = NearField::new(&body);
+        [1.0, 2.0].map(|radius| near.mean_tension(node, radius) / stress)
+    }
+
+    #[test]
+    fn mean_tension_of_uniform_stress_is_that_stress() {
+        for ratio in [check_tension::<Dim2>(), check_tension::<Dim3>()].concat() {
+            assert!((ratio - 1.0).abs() < 5e-3, "{ratio}");
         }
     }
 
