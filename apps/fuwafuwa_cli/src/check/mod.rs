@@ -157,7 +157,6 @@ enum Which {
     /// of the theory of critical distances (Taylor 1999).
     Grid,
     /// A knife must spend the fracture energy. Reference: toughness² (1 − ν²) / E, and 2 r × strength for a dull edge of radius r.
-    ///
     Knife,
     /// All checks.
     All,

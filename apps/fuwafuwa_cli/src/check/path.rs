@@ -83,8 +83,7 @@ pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
             let row = format!(
                 "path {dim}D, {name}, n = {voxels}, {strength}{pose}, {turned}°, {side} wing [°]"
             );
-            let is_straight = *oblique == 0.0 && *dim == 2;
-            let tolerance = TOLERANCES[usize::from(!is_straight)];
+            let tolerance = TOLERANCES[usize::from(*oblique != 0.0 || *dim == 3)];
             outcomes.push(Outcome::near(row, direction, wanted, tolerance));
             if *dim == 2 {
                 series.push((name.clone(), (*turned, direction - wanted)));
@@ -111,9 +110,9 @@ pub fn check(progress: &Progress, extent: Extent) -> Result<Findings> {
 /// Returns the measurements.
 fn cases(extent: Extent) -> Vec<Case> {
     let mut cases = Vec::new();
-    let mut add = |oblique, voxels, is_near, pose, angles: &[f64]| {
+    let mut add = |dim, oblique, voxels, is_near, pose, angles: &[f64]| {
         cases.extend(angles.iter().map(|&turned| Case {
-            dim: 2,
+            dim,
             oblique,
             voxels,
             turned,
@@ -127,24 +126,17 @@ fn cases(extent: Extent) -> Vec<Case> {
         Extent::Full => &[32, 64, 128],
     };
     for (&voxels, is_near) in numbers.iter().flat_map(|n| [(n, false), (n, true)]) {
-        add(0.0, voxels, is_near, Pose::Upright, &straight);
+        add(2, 0.0, voxels, is_near, Pose::Upright, &straight);
         for oblique in [15.0, 30.0, 45.0] {
-            add(oblique, voxels, is_near, Pose::Upright, &few);
+            add(2, oblique, voxels, is_near, Pose::Upright, &few);
         }
     }
     for pose in [Pose::Lying, Pose::Turned, Pose::Spinning] {
-        add(0.0, 64, false, pose, &[22.5]);
-        add(30.0, 64, false, pose, &[22.5]);
+        add(2, 0.0, 64, false, pose, &[22.5]);
+        add(2, 30.0, 64, false, pose, &[22.5]);
     }
-    let turned = [0.0, 10.0, 22.5, 35.0, 45.0].into_iter();
-    cases.extend(turned.map(|turned| Case {
-        dim: 3,
-        oblique: 0.0,
-        voxels: 32,
-        turned,
-        is_near: false,
-        pose: Pose::Upright,
-    }));
+    let all = [0.0, 10.0, 22.5, 35.0, 45.0];
+    add(3, 0.0, 32, false, Pose::Upright, &all);
     cases
 }
 

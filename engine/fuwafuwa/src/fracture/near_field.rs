@@ -57,8 +57,6 @@ pub struct NearField<'a, D: Dim> {
     loads: Vec<(ElementId, Load)>,
     /// Index in `loads` of the last element with id k at index k modulo [`CACHED`]; [`NONE`] without one.
     places: Vec<u32>,
-    /// Weight q at each squared distance from the tip [voxels²].
-    weights: Vec<f32>,
     /// Scratch list of the elements near a node, with the volume of their part within a radius [voxels].
     near: Vec<(ElementId, f32)>,
     /// Scratch list of the offsets of tips [voxels].
@@ -72,7 +70,6 @@ impl<'a, D: Dim> NearField<'a, D> {
             body,
             loads: Vec::new(),
             places: Vec::new(),
-            weights: weights::<D>(),
             near: Vec::new(),
             tips: Vec::new(),
         }
@@ -85,6 +82,7 @@ impl<'a, D: Dim> NearField<'a, D> {
         let (mesh, at) = (body.mesh(), body.mesh().node(tip).at);
         let radius = outer_radius::<D>();
         let most = (radius * radius) as i32;
+        let weights = weights::<D>();
         self.gather(tip, radius.ceil() as i32, |_| 1.0);
         let half_voxel = 0.5 * body.grid().voxel_size();
         let mut force = Vec3::ZERO;
@@ -105,7 +103,7 @@ impl<'a, D: Dim> NearField<'a, D> {
                 if D::N == 3 && square <= most && body.breakable_nodes().is_tip(node) {
                     self.tips.push(Vec3::new(x as f32, y as f32, z as f32));
                 }
-                let weight = self.weights.get(square as usize).copied();
+                let weight = weights.get(square as usize).copied();
                 slope += gradient.as_vec3() * weight.unwrap_or(0.0);
             }
             if slope == Vec3::ZERO {
@@ -189,9 +187,11 @@ impl<'a, D: Dim> NearField<'a, D> {
             let is_larger = mesh
                 .element(owner)
                 .is_some_and(|element| element.cell.width() > 1);
-            let mut known = self.near[..count].iter();
-            let known = is_larger.then(|| known.rposition(|&(id, _)| id == owner));
-            match known.flatten() {
+            let known = match is_larger {
+                true => self.near[..count].iter().rposition(|&(id, _)| id == owner),
+                false => None,
+            };
+            match known {
                 Some(known) => self.near[known].1 += share,
                 None if pieces.of_element(owner) == piece => {
                     self.near[count] = (owner, share);
@@ -227,12 +227,11 @@ impl<'a, D: Dim> NearField<'a, D> {
     }
 }
 
-/// Returns the weight q at each squared distance from the tip [voxels²], as far as it is positive.
-fn weights<D: Dim>() -> Vec<f32> {
+/// Returns the weight q at each squared distance from the tip [voxels²]; at the distances beyond these, it is 0.
+fn weights<D: Dim>() -> [f32; 9] {
     let radius = outer_radius::<D>();
-    let squares = 0..(radius * radius) as u32;
-    let weight = |square: u32| (radius - (square as f32).sqrt()) / (radius - INNER_RADIUS);
-    squares.map(|square| weight(square).min(1.0)).collect()
+    let weight = |square: usize| (radius - (square as f32).sqrt()) / (radius - INNER_RADIUS);
+    std::array::from_fn(|square| weight(square).clamp(0.0, 1.0))
 }
 
 /// Returns the integral of the weight q over the first `length` of a line through the tip [voxels].
@@ -513,12 +512,10 @@ pub(super) mod tests {
         }
     }
 
-    /// Stretches a body along its first axis, and returns the mean tensions around a node at its surface within
-    /// one and two voxels, divided by the uniform stress.
-    fn check_tension<D: Cracked>() -> [f32; 2] {
-        let material = Material::default();
+    /// Returns a body that is stretched along its first axis, a node at its surface, and the uniform stress [Pa].
+    pub fn stretched<D: Dim>(material: &Material) -> (SoftBody<D>, NodeId, f32) {
         let grid = VoxelGrid::<D>::cube(8, 1.0).unwrap();
-        let mut body = SoftBody::new(grid, &[material]).unwrap();
+        let mut body = SoftBody::new(grid, &[*material]).unwrap();
         let strain = 1e-3;
         let nodes: Vec<NodeId> = body.mesh().nodes().map(|(id, _)| id).collect();
         for id in nodes {
@@ -534,6 +531,13 @@ pub(super) mod tests {
         let elasticity = material.elasticity;
         // Uniaxial strain, because the sides do not contract.
         let stress = (elasticity.lame() + 2.0 * elasticity.shear_modulus()) as f32 * strain;
+        (body, node, stress)
+    }
+
+    /// Returns the mean tensions around a node of a stretched body within one and two voxels, divided by the
+    /// uniform stress.
+    fn check_tension<D: Dim>() -> [f32; 2] {
+        let (body, node, stress) = stretched::<D>(&Material::default());
         let mut near = NearField::new(&body);
         [1.0, 2.0].map(|radius| near.mean_tension(node, radius) / stress)
     }

@@ -153,9 +153,9 @@ pub fn crumb_factor(node: &BreakableNode, cut: &NodeCut) -> f32 {
     if is_crumb { CRUMB_FACTOR } else { 1.0 }
 }
 
-/// Returns whether the tension of every cut through a node is certain to be below `least` [Pa], from a bound that is fast to compute. The pull of a cut is at most half the sum of the force magnitudes
-/// |f| of the n voxels around the node, and (Σ|f|)² ≤ n Σ|f|². The factor 0.2501 is ¼ and a margin for
-/// rounding. The area is that of one face, the least that a cut opens.
+/// Returns whether the tension of every cut through a node is certain to be below `least` [Pa], from a bound that
+/// is fast to compute. The pull of a cut is at most half the sum of the force magnitudes |f| of the n voxels around
+/// the node, and (Σ|f|)² ≤ n Σ|f|². The factor 0.2501 is ¼ and a margin for rounding. The area is that of one face, the least that a cut opens.
 #[inline(always)]
 pub fn is_surely_below<D: Dim, S: Simd>(
     simd: S,
