@@ -34,7 +34,8 @@ pub struct Material {
     /// tears. A player can tear a body with a strength of a fifth of Young's modulus by hand.
     ///
     /// The tension is the mean over the radius 0.5 (toughness / strength)² [Taylor 2007]. For radii below a voxel, and
-    /// above 8 voxels in 2D or 4 in 3D, it is extrapolated. Elements with all nodes fixed do not count.
+    /// above 8 voxels in 2D or 4 in 3D, it is extrapolated, at most to 64 voxels. Elements with all nodes fixed do
+    /// not count.
     pub strength: f32,
     /// Scatter of the strength, 0 to 10, default 0.4: at each lattice point of a smooth surface, the strength is
     /// raised by a fixed pseudo-random part, at most by this factor. With 0, a row of equally loaded points fails

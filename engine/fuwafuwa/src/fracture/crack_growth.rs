@@ -91,8 +91,9 @@ const STRENGTH_RADIUS: f32 = 0.5;
 /// less than a voxel there are too few elements, and with the radius the cost grows.
 const MIN_RADIUS: f32 = 1.0;
 const MAX_RADIUS: [f32; 2] = [8.0, 4.0];
-/// Least radius to which the mean tension is extrapolated [voxels].
-const LEAST_RADIUS: f32 = 1.0 / 64.0;
+/// Least and greatest radius to which the mean tension is extrapolated [voxels]. With an infinite toughness, the radius
+/// is infinite.
+const EXTRAPOLATED: [f32; 2] = [1.0 / 64.0, 64.0];
 /// Exponent of the extrapolation of the mean tension to radii below [`MIN_RADIUS`], relative to the slope
 /// between the means within one and two voxels. Measured by `fuwafuwa check grid`, as is [`STRENGTH_RADIUS`].
 const STEEPENING: f32 = 0.6;
@@ -131,8 +132,8 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
             {
                 continue;
             }
-            let at = body.mesh().node(id).at;
-            if *damage >= 1.0 && body.cooldowns().covers(at) {
+            // A node that would fail waits until the cooldown is over.
+            if *damage >= 1.0 && body.cooldowns().covers(body.mesh().node(id).at) {
                 continue;
             }
             // A fast test excludes most nodes: those far from failure.
@@ -213,8 +214,8 @@ fn least_tension<D: Dim>(body: &SoftBody<D>, node: &BreakableNode) -> f32 {
     }
 }
 
-/// Returns the nodal tension [Pa] that is typical of failure. A short crack in a tough material fails at the strength,
-/// not at the toughness.
+/// Returns the nodal tension [Pa] that is typical of failure. A short crack in a tough material fails at the
+/// strength, not at the toughness.
 #[inline(always)]
 fn opening_threshold<D: Dim>(body: &SoftBody<D>, node: &BreakableNode) -> f32 {
     match node.is_tip {
@@ -272,11 +273,16 @@ fn tension_within<D: Dim>(near: &mut NearField<D>, node: NodeId, radius: f32) ->
     if tension <= 0.0 || radius == known {
         return tension;
     }
+    let [least, greatest] = EXTRAPOLATED;
+    let radius = radius.clamp(least, greatest);
     // Near a crack, the mean tension falls with the square root of the radius; no notch is steeper.
-    let slope = |inner: f32, outer: f32| libm::log2f(inner / outer).clamp(0.0, 0.5);
+    let slope = |inner: f32, outer: f32| match outer > 0.0 {
+        true => libm::log2f((inner / outer).max(1.0)).min(0.5),
+        false => 0.5,
+    };
     if radius < known {
         let slope = STEEPENING * slope(tension, near.mean_tension(node, 2.0 * known));
-        return tension * libm::powf(known / radius.max(LEAST_RADIUS), slope);
+        return tension * libm::powf(known / radius, slope);
     }
     let slope = slope(near.mean_tension(node, 0.5 * known), tension);
     tension * libm::powf(known / radius, slope)
@@ -366,9 +372,9 @@ fn tip_failure<D: Dim>(
     })
 }
 
-/// Returns the cut that keeps a tip close to its ideal path and is pulled well, and the deviation after it. `direction` is
-/// that of growth, `along` that of the front, both as unit vectors or zero. `worst` is the cut with the highest
-/// nodal tension; it is taken if the direction is implausible.
+/// Returns the cut that keeps a tip close to its ideal path and is pulled well, and the deviation after it.
+/// `direction` is that of growth, `along` that of the front, both as unit vectors or zero. `worst` is the cut with
+/// the highest nodal tension; it is taken if the direction is implausible.
 fn next_cut<D: Dim>(
     body: &SoftBody<D>,
     node: &BreakableNode,
@@ -417,7 +423,7 @@ fn material<'a, D: Dim>(body: &'a SoftBody<D>, node: &BreakableNode) -> &'a Mate
 mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
-    use crate::fracture::near_field::tests::{Cracked, Intensities, cracked};
+    use crate::fracture::near_field::tests::{Cracked, Intensities, cracked, stretched};
     use crate::math::rotation::Rotation;
     use std::f32::consts::PI;
 
@@ -429,11 +435,40 @@ mod tests {
         };
         let intensities = intensities.map(|intensity| intensity * material.toughness);
         let (body, tip) = cracked::<D>(&material, intensities, Rotation::in_plane(turn));
-        let place = tip.index();
+        failure_at(&body, tip)
+    }
+
+    fn failure_at<D: Dim>(body: &SoftBody<D>, id: NodeId) -> Option<Failure> {
+        let place = id.index();
         let mut nodes = body.breakable_nodes().among(place..place + 1);
-        let (id, node) = nodes.next().unwrap();
-        let least = least_tension(&body, node);
-        failure(&body, &mut NearField::new(&body), id, node, least)
+        let (_, node) = nodes.next().unwrap();
+        let least = least_tension(body, node);
+        failure(body, &mut NearField::new(body), id, node, least)
+    }
+
+    /// Checks that a uniform stress tears a smooth surface at twice its strength, and not at half of it.
+    fn check_surface<D: Dim>(toughness: f32) {
+        let (.., stress) = stretched::<D>(&Material::default());
+        for share in [0.5, 2.0] {
+            let material = Material {
+                strength: stress / share,
+                strength_scatter: 0.0,
+                toughness,
+                ..Material::default()
+            };
+            let (body, node, _) = stretched::<D>(&material);
+            let excess = failure_at(&body, node).map(|failure| failure.excess);
+            let is_right = excess.map_or(share < 1.0, |excess| (excess - share).abs() < 0.02);
+            assert!(is_right, "toughness {toughness}, {share}: {excess:?}");
+        }
+    }
+
+    #[test]
+    fn uniform_stress_tears_at_strength_at_any_toughness() {
+        for toughness in [1e-3, 1.0, 1e4, f32::INFINITY] {
+            check_surface::<Dim2>(toughness);
+            check_surface::<Dim3>(toughness);
+        }
     }
 
     /// Checks growth under 1.2 and 0.8 of the toughness, with a turned body.
