@@ -25,7 +25,12 @@ pub(crate) use joint_state::{JointState, Joints, relax, solve};
 /// use fuwafuwa::{Dim2, Joint, JointAnchor, Material, SoftBody, Vec2, VoxelGrid, World, WorldConfig};
 ///
 /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-/// let ball = SoftBody::new(VoxelGrid::ball(12, 1.0)?, &[Material::default()])?;
+/// // The weight of the ball, 770 N, hangs from a width of 0.4 m: 1.9 kPa, more than the default strength.
+/// let material = Material {
+///     strength: 4000.0,
+///     ..Material::default()
+/// };
+/// let ball = SoftBody::new(VoxelGrid::ball(12, 1.0)?, &[material])?;
 /// let ball = world.add_soft_body(ball)?;
 /// let top = Vec2::new(0.5, 1.0);
 /// let anchor = JointAnchor::on(ball, top).within(0.2);
