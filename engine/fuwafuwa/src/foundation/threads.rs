@@ -3,6 +3,7 @@
 //! bitwise identical for any number of threads.
 
 use crate::foundation::ids::NodeId;
+use std::ops::Range;
 
 /// Number of items in a chunk. With fewer items, the handover to a thread takes longer than the work. Unit
 /// tests use small bodies, and should still cover several chunks.
@@ -70,6 +71,14 @@ pub fn rows<'a, T, const N: usize>(
         first = end;
         share
     })
+}
+
+/// Splits nodes with ascending ids into runs of consecutive ids. A loop over a run reads and writes parts of lists,
+/// without a bounds check for each node.
+#[inline(always)]
+pub fn runs(nodes: &[NodeId]) -> impl Iterator<Item = Range<usize>> {
+    let runs = nodes.chunk_by(|a, b| b.0 == a.0 + 1);
+    runs.map(|run| run[0].index()..run[0].index() + run.len())
 }
 
 #[cfg(test)]

@@ -5,7 +5,8 @@
 //! √, comparisons and selections are used; no fused or approximate operations.
 
 use super::row::Row;
-use fearless_simd::{f32x4, f32x8, prelude::*};
+pub use fearless_simd::f32x4;
+use fearless_simd::{f32x8, prelude::*};
 
 /// Number of elements in a batch.
 pub const LANES: usize = 8;
@@ -198,15 +199,24 @@ fn store<S: Simd>(values: f32x4<S>, numbers: &mut [f32], first: usize) {
     values.store_slice(&mut numbers[first..first + 4]);
 }
 
-/// Returns the sum of several rows of four numbers, added in the order of `places`. Each place is the index
-/// in `numbers` at which a row begins. An unused place is 0, because `numbers` begins with a row of zeros.
+/// Returns the sum of several rows of four numbers, added in the order of `places`, without the components from
+/// `components` on. Each place is the index in `numbers` at which a row begins. Unused places follow the used ones
+/// and are 0, because `numbers` begins with a row of zeros.
 #[inline(always)]
-pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32]) -> Row {
+pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32; 8], components: usize) -> f32x4<S> {
     let mut sum = row_at(simd, numbers, places[0]);
-    for &place in &places[1..] {
+    for &place in &places[1..4] {
         sum += row_at(simd, numbers, place);
     }
-    Row::from_array(sum.to_array())
+    if places[4] != 0 {
+        for &place in &places[4..] {
+            sum += row_at(simd, numbers, place);
+        }
+    }
+    // A selection, because writing zeros to an array would store the sum and load it again.
+    let third = if components == 2 { 0.0 } else { 1.0 };
+    let is_kept = four(simd, [1.0, 1.0, third, 0.0]).simd_gt(0.0);
+    is_kept.select(sum, f32x4::splat(simd, 0.0))
 }
 
 /// Returns, for each of the four columns, the sum of squares over several rows. Each of `places` is the index

@@ -28,12 +28,12 @@ pub use crate::math::row::Row;
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId};
 use crate::foundation::threads::{self, RowChunk};
-use crate::math::lanes::{Eight, LANES, on_widest_lanes, sum, sum_of_squares};
+use crate::math::lanes::{Eight, LANES, f32x4, on_widest_lanes, sum, sum_of_squares};
 use crate::math::rotation::Rotation;
 use crate::soft_body::element_law::{Elasticity, Law};
 use crate::soft_body::plasticity::Plasticity;
 use batch::{Batch, BatchKey, GROUP, Group, Shared, VACANT, evaluate_best};
-use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 use force_kernel::{Moduli, Scratch};
 use glam::{Mat3, Quat, Vec3};
 use plastic_kernel::PlasticFlowLimits;
@@ -245,7 +245,10 @@ impl<D: Dim> ElementBatches<D> {
     /// Elastic force [N] on a node in the last evaluation: the sum of the forces of its elements.
     #[inline]
     pub fn force_on(&self, node: NodeId) -> Row {
-        on_widest_lanes!(simd => self.force_by(simd, node))
+        on_widest_lanes!(simd => {
+            let force = sum(simd, &self.forces, &self.slots[node], D::N);
+            Row::from_array(force.to_array())
+        })
     }
 
     /// Elastic force [N] of each element on a node in the last evaluation, in the order of the octants around
@@ -267,13 +270,6 @@ impl<D: Dim> ElementBatches<D> {
         let slots = &self.slots[node][..D::CORNERS];
         let squares = sum_of_squares(simd, &self.forces, slots);
         squares[..D::N].iter().sum()
-    }
-
-    #[inline(always)]
-    fn force_by<S: Simd>(&self, simd: S, node: NodeId) -> Row {
-        let mut sum = sum(simd, &self.forces, &self.slots[node][..D::CORNERS]);
-        sum[D::N..].fill(0.0);
-        sum
     }
 
     /// Rotation matrix of an element in the last evaluation, by rows.
@@ -355,16 +351,19 @@ impl<D: Dim> ElementBatches<D> {
         update: &VelocityUpdate,
         rows: RowChunk<Row, 1>,
     ) {
-        let [velocity] = rows.lists;
-        for &id in rows.nodes {
-            let node = id.index();
-            let inverse_mass = update.inverse_mass[node];
-            if inverse_mass == 0.0 {
-                continue;
+        let [velocities] = rows.lists;
+        let gravity = f32x4::load_array(simd, update.gravity.to_array());
+        for run in threads::runs(rows.nodes) {
+            let velocities = &mut velocities[run.start - rows.first..run.end - rows.first];
+            let own = { self.slots.as_slice()[run.clone()].iter() }.zip(&update.inverse_mass[run]);
+            for (velocity, (slots, &inverse_mass)) in velocities.iter_mut().zip(own) {
+                if inverse_mass != 0.0 {
+                    let force = sum(simd, &self.forces, slots, D::N);
+                    let change = (force * inverse_mass + gravity) * update.duration;
+                    let changed = f32x4::load_array(simd, velocity.to_array()) + change;
+                    *velocity = Row::from_array(changed.to_array());
+                }
             }
-            let acceleration = self.force_by(simd, id) * inverse_mass + update.gravity;
-            let velocity = &mut velocity[node - rows.first];
-            *velocity += acceleration * update.duration;
         }
     }
 

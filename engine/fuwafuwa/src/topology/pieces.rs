@@ -14,6 +14,7 @@ use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::topology::mesh::Mesh;
 use glam::Vec3;
 use std::collections::{BTreeMap, VecDeque};
+use std::ops::Range;
 
 /// Placeholder for the piece of an element that is not assigned to a piece yet.
 const NONE: PieceId = PieceId(u32::MAX);
@@ -135,6 +136,12 @@ impl Pieces {
     #[inline]
     pub fn of_node(&self, id: NodeId) -> PieceId {
         self.of_node[id]
+    }
+
+    /// Returns the pieces of nodes with consecutive ids.
+    #[inline]
+    pub fn of_nodes(&self, ids: Range<usize>) -> &[PieceId] {
+        &self.of_node.as_slice()[ids]
     }
 
     /// Returns whether the piece of a node sleeps.
