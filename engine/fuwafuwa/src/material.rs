@@ -30,22 +30,22 @@ pub struct Material {
     /// rate, a bounce would stop the rotation. With 0, crumbs roll like balls. Larger pieces have corners and do
     /// not use it. A body of several materials uses the mean over its voxels.
     pub rolling_resistance: f32,
-    /// Tensile strength of a smooth surface [Pa], default 1000: the tension at which a crack starts; infinite = never
-    /// tears. A player can tear a body with a strength of a fifth of Young's modulus by hand.
+    /// Tensile strength of a smooth surface [Pa], default 1000: the tension at which a crack starts; infinite = no
+    /// crack starts. A player can tear a body with a strength of a fifth of Young's modulus by hand.
     ///
-    /// The tension is the mean over the radius 0.5 (toughness / strength)² [Taylor 2007]. For radii below a voxel, and
-    /// above 8 voxels in 2D or 4 in 3D, it is extrapolated, at most to 64 voxels. Elements with all nodes fixed do
-    /// not count.
+    /// The tension is the mean over the radius 0.5 (toughness / strength)² [Taylor 2007]. Below a voxel, and above
+    /// 8 voxels in 2D or 4 in 3D, the mean is extrapolated, to at least 1/64 and at most 64 voxels. A crack that is
+    /// short compared with this radius grows at the strength, too. Elements with all nodes fixed do not count.
     pub strength: f32,
     /// Scatter of the strength, 0 to 10, default 0.4: at each lattice point of a smooth surface, the strength is
-    /// raised by a fixed pseudo-random part, at most by this factor. With 0, a row of equally loaded points fails
+    /// raised by a fixed pseudo-random share of 0 to this value. With 0, a row of equally loaded points fails
     /// at once.
     pub strength_scatter: f32,
     /// Fracture toughness K_Ic [Pa √m] in plane strain, default 150; infinite = cracks that have started do not
     /// grow. A crack grows as soon as its energy release rate exceeds the [fracture
-    /// energy](Self::fracture_energy), in the direction that releases most energy [Griffith 1921]. Neither depends
-    /// on the size or the direction of the voxels. In 2D, cracks grow within 3 % of this toughness, in 3D within
-    /// 12 % (`fuwafuwa check lefm`).
+    /// energy](Self::fracture_energy), in the direction that releases most energy [Griffith 1921]. Neither its load
+    /// nor its direction depends on the size or the direction of the voxels. In 2D, cracks grow within 4 % of this
+    /// toughness, in 3D within 12 % (`fuwafuwa check lefm`).
     ///
     /// Rule of thumb, with toughness in Pa √m and strength in Pa: at toughness = 0.15 strength, a crack that
     /// has started keeps running; at toughness = 0.4 strength, cracks stop near the surface.

@@ -166,7 +166,7 @@ const TEST: &[Step] = &[
         "an example in the documentation failed or did not compile, see above",
     ),
     (
-        "test --release --tests --package fuwafuwa --package determinism_checks --all-features",
+        "test --release --lib --test native --test checks --package fuwafuwa --package determinism_checks --all-features",
         "passes in debug but not in release: look for side effects inside a debug_assert!, \
          and for sums whose order depends on the number of threads",
     ),

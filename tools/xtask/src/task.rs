@@ -12,8 +12,8 @@ usage: cargo xtask <task>
 
 tasks:
   play [-- ARGS]   build and run the game with these arguments
-  test             run all tests in debug mode, then the engine's in release mode with one to
-                   eight threads
+  test             run all tests in debug mode, then the engine's unit tests and golden scenes in
+                   release mode, with one to eight threads
   check            check formatting, lints and documentation, then run all of `test`
   wasm             run the golden scenes on wasm32 under Node; compare bits and speed with native
   web              build the game for a browser, as a folder for any web server;

@@ -25,7 +25,7 @@ pub(crate) use joint_state::{JointState, Joints, relax, solve};
 /// use fuwafuwa::{Dim2, Joint, JointAnchor, Material, SoftBody, Vec2, VoxelGrid, World, WorldConfig};
 ///
 /// let mut world = World::<Dim2>::new(WorldConfig::default())?;
-/// // The weight of the ball, 770 N, hangs from a width of 0.4 m: 1.9 kPa, more than the default strength.
+/// // The ball weighs 770 N and hangs from 0.4 m of its surface: 1.9 kPa, above the default strength of 1 kPa.
 /// let material = Material {
 ///     strength: 4000.0,
 ///     ..Material::default()

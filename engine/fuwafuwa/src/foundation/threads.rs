@@ -73,17 +73,52 @@ pub fn rows<'a, T, const N: usize>(
     })
 }
 
-/// Splits nodes with ascending ids into runs of consecutive ids. A loop over a run reads and writes parts of lists,
-/// without a bounds check for each node.
+/// Run of nodes with consecutive ids.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Ids of the nodes.
+    pub ids: Range<usize>,
+    /// Rows of the nodes in the lists of their [`RowChunk`].
+    pub rows: Range<usize>,
+}
+
+/// Splits the nodes of a [`RowChunk`] into runs. A part of a list by a run takes one bounds check for the run, not one
+/// for each node. `first` is the node id of the first row of the chunk.
 #[inline(always)]
-pub fn runs(nodes: &[NodeId]) -> impl Iterator<Item = Range<usize>> {
+pub fn runs(nodes: &[NodeId], first: usize) -> impl Iterator<Item = Run> {
     let runs = nodes.chunk_by(|a, b| b.0 == a.0 + 1);
-    runs.map(|run| run[0].index()..run[0].index() + run.len())
+    runs.map(move |run| {
+        let start = run[0].index();
+        let row = start - first;
+        Run {
+            ids: start..start + run.len(),
+            rows: row..row + run.len(),
+        }
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_are_broken_by_missing_ids_only() {
+        let runs = |ids: &[u32]| {
+            let nodes: Vec<NodeId> = ids.iter().map(|&id| NodeId(id)).collect();
+            let lists = [&mut [0u8; 100][..]];
+            let chunks = rows(&nodes, lists).map(|chunk| {
+                let runs = super::runs(chunk.nodes, chunk.first).map(|run| (run.ids, run.rows));
+                runs.collect::<Vec<_>>()
+            });
+            chunks.collect::<Vec<_>>()
+        };
+        assert!(runs(&[]).is_empty());
+        assert_eq!(runs(&[7]), [[(7..8, 7..8)]]);
+        assert_eq!(runs(&[0, 1, 4, 5, 6]), [[(0..2, 0..2), (4..7, 4..7)]]);
+        // The second chunk of 32 nodes begins within a run, and its rows begin after those of the first.
+        let ids: Vec<u32> = (10..50).collect();
+        assert_eq!(runs(&ids), [[(10..42, 10..42)], [(42..50, 0..8)]]);
+    }
 
     #[test]
     fn rows_assign_every_node_to_one_chunk() {

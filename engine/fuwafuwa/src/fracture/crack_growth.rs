@@ -8,9 +8,10 @@
 //! ```
 //!
 //! Each tip stores its deviation from the path along J. Of the possible cuts it takes one that leaves little
-//! deviation and is pulled well. A crack *starts* at a smooth surface if the mean tension within a radius of
-//! 0.5 (K/σ)² exceeds the strength σ [Taylor 2007]. With this radius, a narrow notch and a crack fail at similar
-//! loads, and a notch of any width fails at the same load at every voxel size. In both cases, the nodal tension of
+//! deviation and has a high nodal tension. A crack *starts* at a smooth surface if the mean tension within a radius
+//! of 0.5 (K/σ)² exceeds the strength σ [Taylor 2007]. With this radius, a narrow notch and a crack fail at similar
+//! loads, and a notch of any width fails at nearly the same load at every voxel size. A crack that is short
+//! compared with this radius grows as if its tip were a smooth surface. In all cases, the nodal tension of
 //! [`nodal_tension`](super::nodal_tension) must pull the cut open. Under [`Law::Endo2004`], the nodal tension
 //! alone decides, as in the paper.
 //!
@@ -79,29 +80,30 @@ const COOLDOWN_VOXELS: f64 = 4.0;
 /// Nodal tension, divided by the threshold, below which the load near a node is not computed. At a tip whose
 /// load equals the toughness, the nodal tension is 0.9 to 1.5 times its threshold.
 const GATE: f32 = 0.6;
-/// Largest load of a tip relative to its nodal tension. It excludes tips that are pressed or sheared: the
-/// energy-release vector counts the energy that a crack would release if its faces did not touch.
+/// Upper limit of the load of a tip, relative to its nodal tension divided by the threshold. It excludes tips that are
+/// pressed or sheared: the energy-release vector counts the energy that a crack would release if its faces did not
+/// touch.
 const MAX_CLOSED_SHARE: f32 = 1.2;
 /// Stress intensity estimated from |J| divided by the exact one, in 2D and in 3D. Measured by `fuwafuwa check lefm`.
 const TIP_FACTOR: [f32; 2] = [0.97, 0.985];
 /// Radius of the mean tension at a surface, relative to (toughness / strength)². The line method of [Taylor 2007]
 /// averages along a line of 2/π, his area method over a half disc with a radius of 1.3/π.
 const STRENGTH_RADIUS: f32 = 0.5;
-/// Smallest and largest radius of the mean tension at a surface [voxels]; the largest in 2D and in 3D. Within
-/// less than a voxel there are too few elements, and with the radius the cost grows.
+/// Least radius of a computed mean tension at a surface [voxels]. A smaller one contains too few elements.
 const MIN_RADIUS: f32 = 1.0;
+/// Greatest such radius in 2D and in 3D [voxels]. The cost grows with it.
 const MAX_RADIUS: [f32; 2] = [8.0, 4.0];
-/// Least and greatest radius to which the mean tension is extrapolated [voxels]. With an infinite toughness, the radius
-/// is infinite.
+/// Least and greatest radius to which the mean tension is extrapolated [voxels]. An infinite toughness gives an infinite
+/// radius.
 const EXTRAPOLATED: [f32; 2] = [1.0 / 64.0, 64.0];
 /// Exponent of the extrapolation of the mean tension to radii below [`MIN_RADIUS`], relative to the slope
 /// between the means within one and two voxels. Measured by `fuwafuwa check grid`, as is [`STRENGTH_RADIUS`].
 const STEEPENING: f32 = 0.6;
 /// Least advance of a cut in the direction of growth [voxels].
 const MIN_ADVANCE: f32 = 0.1;
-/// Deviation that a tip accepts in order to take the cut with the highest nodal tension instead of one with none
-/// [voxels], in 2D and in 3D. With less, cracks in 3D are ragged and leave many crumbs; with more, they follow the
-/// voxels.
+/// Weight of the pull against the deviation [voxels], in 2D and in 3D: the additional deviation for which a tip takes
+/// the cut with the highest nodal tension instead of one with none. With less, cracks in 3D are ragged and leave many
+/// crumbs; with more, they follow the voxels.
 const PULL_WEIGHT: [f32; 2] = [1.0, 2.0];
 /// Least cosine of the angle between the direction of growth and the advance of the worst cut. No crack turns
 /// by more than 71° in one step, the angle in pure shear [Erdogan and Sih 1963], but near contacts and in rubble J
@@ -214,8 +216,8 @@ fn least_tension<D: Dim>(body: &SoftBody<D>, node: &BreakableNode) -> f32 {
     }
 }
 
-/// Returns the nodal tension [Pa] that is typical of failure. A short crack in a tough material fails at the
-/// strength, not at the toughness.
+/// Returns the scale of the nodal tension [Pa] at failure: the threshold, but at a tip at most the strength, because a
+/// short crack in a tough material fails at the strength.
 #[inline(always)]
 fn opening_threshold<D: Dim>(body: &SoftBody<D>, node: &BreakableNode) -> f32 {
     match node.is_tip {
@@ -224,7 +226,7 @@ fn opening_threshold<D: Dim>(body: &SoftBody<D>, node: &BreakableNode) -> f32 {
     }
 }
 
-/// Returns the failure of a node, if it is overloaded. Nodal tensions below `least` [Pa] are not.
+/// Returns the failure of a node, if it is overloaded. Cuts with a nodal tension below `least` [Pa] are ignored.
 #[inline(never)]
 fn failure<D: Dim>(
     body: &SoftBody<D>,
@@ -264,8 +266,8 @@ fn surface_failure<D: Dim>(
     (excess > 1.0).then(|| start(body, id, node, tension, excess, worst.cut))
 }
 
-/// Returns the mean tension [Pa] within `radius` [voxels] of a node. Outside [`MIN_RADIUS`] and [`MAX_RADIUS`], it is
-/// extrapolated.
+/// Returns the mean tension [Pa] within `radius` [voxels] of a node. Below [`MIN_RADIUS`] and above [`MAX_RADIUS`], it
+/// is extrapolated.
 fn tension_within<D: Dim>(near: &mut NearField<D>, node: NodeId, radius: f32) -> f32 {
     let most = MAX_RADIUS[D::N - 2];
     let known = radius.clamp(MIN_RADIUS, most);
@@ -275,17 +277,21 @@ fn tension_within<D: Dim>(near: &mut NearField<D>, node: NodeId, radius: f32) ->
     }
     let [least, greatest] = EXTRAPOLATED;
     let radius = radius.clamp(least, greatest);
-    // Near a crack, the mean tension falls with the square root of the radius; no notch is steeper.
-    let slope = |inner: f32, outer: f32| match outer > 0.0 {
-        true => libm::log2f((inner / outer).max(1.0)).min(0.5),
-        false => 0.5,
-    };
     if radius < known {
         let slope = STEEPENING * slope(tension, near.mean_tension(node, 2.0 * known));
         return tension * libm::powf(known / radius, slope);
     }
     let slope = slope(near.mean_tension(node, 0.5 * known), tension);
     tension * libm::powf(known / radius, slope)
+}
+
+/// Returns the exponent with which a mean tension [Pa] falls from a radius to its double. Near a crack, it falls with
+/// the square root of the radius; no notch is steeper. A wider mean that is compressive counts as steepest.
+fn slope(inner: f32, outer: f32) -> f32 {
+    if outer <= 0.0 {
+        return 0.5;
+    }
+    libm::log2f((inner / outer).max(1.0)).min(0.5)
 }
 
 /// Returns the radius within which the mean tension decides at a smooth surface [m].
@@ -355,7 +361,8 @@ fn tip_failure<D: Dim>(
     }
     let to =
         [0, 1, 2].map(|axis: usize| at[axis] + cut.advance[axis].clamp(-1.0, 1.0).round() as i32);
-    // The tip opens the whole voxel faces ahead of it, of which its neighbours along the front share the rest.
+    // `face_area` is the part of a face nearest to the node. The tip opens twice as much; in 3D, its neighbours along the
+    // front open the rest.
     let area = 2.0 * f32::from(cut.faces) * face_area::<D>(size);
     Some(Failure {
         node: id,
@@ -372,7 +379,7 @@ fn tip_failure<D: Dim>(
     })
 }
 
-/// Returns the cut that keeps a tip close to its ideal path and is pulled well, and the deviation after it.
+/// Returns a cut with a high nodal tension that keeps a tip close to its ideal path, and the deviation after it.
 /// `direction` is that of growth, `along` that of the front, both as unit vectors or zero. `worst` is the cut with
 /// the highest nodal tension; it is taken if the direction is implausible.
 fn next_cut<D: Dim>(
@@ -446,20 +453,36 @@ mod tests {
         failure(body, &mut NearField::new(body), id, node, least)
     }
 
-    /// Checks that a uniform stress tears a smooth surface at twice its strength, and not at half of it.
-    fn check_surface<D: Dim>(toughness: f32) {
+    /// Returns the load of a smooth surface relative to its strength, if it fails under a uniform stress of `share`
+    /// times the strength.
+    fn surface_excess<D: Dim>(toughness: f32, share: f32) -> Option<f32> {
         let (.., stress) = stretched::<D>(&Material::default());
-        for share in [0.5, 2.0] {
-            let material = Material {
-                strength: stress / share,
-                strength_scatter: 0.0,
-                toughness,
-                ..Material::default()
-            };
-            let (body, node, _) = stretched::<D>(&material);
-            let excess = failure_at(&body, node).map(|failure| failure.excess);
-            let is_right = excess.map_or(share < 1.0, |excess| (excess - share).abs() < 0.02);
-            assert!(is_right, "toughness {toughness}, {share}: {excess:?}");
+        let material = Material {
+            strength: stress / share,
+            strength_scatter: 0.0,
+            toughness,
+            ..Material::default()
+        };
+        let (body, node, _) = stretched::<D>(&material);
+        failure_at(&body, node).map(|failure| failure.excess)
+    }
+
+    fn check_surface<D: Dim>(toughness: f32) {
+        assert_eq!(surface_excess::<D>(toughness, 0.5), None, "{toughness}");
+        let excess = surface_excess::<D>(toughness, 2.0).unwrap();
+        assert!((excess - 2.0).abs() < 0.02, "{toughness}: {excess}");
+    }
+
+    #[test]
+    fn slope_is_finite_and_at_most_that_of_crack() {
+        let root = 2f32.sqrt();
+        assert!((slope(1.0, 1.0 / root) - 0.5).abs() < 1e-6);
+        assert!((slope(1.0, 1.0 / root.sqrt()) - 0.25).abs() < 1e-6);
+        for compressive in [0.0, -1.0] {
+            assert_eq!(slope(1.0, compressive), 0.5);
+        }
+        for (inner, outer) in [(1.0, 2.0), (1.0, f32::NAN), (f32::NAN, 1.0)] {
+            assert_eq!(slope(inner, outer), 0.0);
         }
     }
 

@@ -55,7 +55,8 @@ pub struct NearField<'a, D: Dim> {
     body: &'a SoftBody<D>,
     /// Loads computed so far.
     loads: Vec<(ElementId, Load)>,
-    /// Index in `loads` of the last element with id k at index k modulo [`CACHED`]; [`NONE`] without one.
+    /// Cache: entry k is the index in `loads` of the most recent element with an id of k modulo [`CACHED`], or
+    /// [`NONE`].
     places: Vec<u32>,
     /// Scratch list of the elements near a node, with the volume of their part within a radius [voxels].
     near: Vec<(ElementId, f32)>,
@@ -227,7 +228,7 @@ impl<'a, D: Dim> NearField<'a, D> {
     }
 }
 
-/// Returns the weight q at each squared distance from the tip [voxels²]; at the distances beyond these, it is 0.
+/// Returns the weight q at each squared distance from the tip [voxels²]; at larger distances, it is 0.
 fn weights<D: Dim>() -> [f32; 9] {
     let radius = outer_radius::<D>();
     let weight = |square: usize| (radius - (square as f32).sqrt()) / (radius - INNER_RADIUS);

@@ -155,7 +155,8 @@ pub fn crumb_factor(node: &BreakableNode, cut: &NodeCut) -> f32 {
 
 /// Returns whether the tension of every cut through a node is certain to be below `least` [Pa], from a bound that
 /// is fast to compute. The pull of a cut is at most half the sum of the force magnitudes |f| of the n voxels around
-/// the node, and (Σ|f|)² ≤ n Σ|f|². The factor 0.2501 is ¼ and a margin for rounding. The area is that of one face, the least that a cut opens.
+/// the node, and (Σ|f|)² ≤ n Σ|f|². The factor 0.2501 is ¼ and a margin for rounding. The area is that of one face,
+/// the least that a cut opens.
 #[inline(always)]
 pub fn is_surely_below<D: Dim, S: Simd>(
     simd: S,

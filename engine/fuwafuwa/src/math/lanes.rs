@@ -5,8 +5,7 @@
 //! √, comparisons and selections are used; no fused or approximate operations.
 
 use super::row::Row;
-pub use fearless_simd::f32x4;
-use fearless_simd::{f32x8, prelude::*};
+use fearless_simd::{f32x4, f32x8, prelude::*};
 
 /// Number of elements in a batch.
 pub const LANES: usize = 8;
@@ -188,8 +187,9 @@ fearless_simd::kernel!(
     }
 );
 
+/// Loads four numbers.
 #[inline(always)]
-fn four<S: Simd>(simd: S, values: [f32; 4]) -> f32x4<S> {
+pub fn four<S: Simd>(simd: S, values: [f32; 4]) -> f32x4<S> {
     f32x4::load_array(simd, values)
 }
 
@@ -199,21 +199,22 @@ fn store<S: Simd>(values: f32x4<S>, numbers: &mut [f32], first: usize) {
     values.store_slice(&mut numbers[first..first + 4]);
 }
 
-/// Returns the sum of several rows of four numbers, added in the order of `places`, without the components from
-/// `components` on. Each place is the index in `numbers` at which a row begins. Unused places follow the used ones
-/// and are 0, because `numbers` begins with a row of zeros.
+/// Returns the sum of several rows of four numbers, added in the order of `places`, with zeros in place of the
+/// components from index `components` on. Each place is the index in `numbers` at which a row begins. Unused places
+/// follow the used ones and are 0, because `numbers` begins with a row of zeros.
 #[inline(always)]
 pub fn sum<S: Simd>(simd: S, numbers: &[f32], places: &[u32; 8], components: usize) -> f32x4<S> {
     let mut sum = row_at(simd, numbers, places[0]);
     for &place in &places[1..4] {
         sum += row_at(simd, numbers, place);
     }
+    // Nodes at surfaces have at most four elements.
     if places[4] != 0 {
         for &place in &places[4..] {
             sum += row_at(simd, numbers, place);
         }
     }
-    // A selection, because writing zeros to an array would store the sum and load it again.
+    // Selects instead of writing zeros into an array: the array would be stored and loaded again.
     let third = if components == 2 { 0.0 } else { 1.0 };
     let is_kept = four(simd, [1.0, 1.0, third, 0.0]).simd_gt(0.0);
     is_kept.select(sum, f32x4::splat(simd, 0.0))

@@ -27,8 +27,8 @@ pub use crate::math::row::Row;
 
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId};
-use crate::foundation::threads::{self, RowChunk};
-use crate::math::lanes::{Eight, LANES, f32x4, on_widest_lanes, sum, sum_of_squares};
+use crate::foundation::threads::{self, RowChunk, Run};
+use crate::math::lanes::{Eight, LANES, four, on_widest_lanes, sum, sum_of_squares};
 use crate::math::rotation::Rotation;
 use crate::soft_body::element_law::{Elasticity, Law};
 use crate::soft_body::plasticity::Plasticity;
@@ -351,16 +351,20 @@ impl<D: Dim> ElementBatches<D> {
         update: &VelocityUpdate,
         rows: RowChunk<Row, 1>,
     ) {
-        let [velocities] = rows.lists;
-        let gravity = f32x4::load_array(simd, update.gravity.to_array());
-        for run in threads::runs(rows.nodes) {
-            let velocities = &mut velocities[run.start - rows.first..run.end - rows.first];
-            let own = { self.slots.as_slice()[run.clone()].iter() }.zip(&update.inverse_mass[run]);
-            for (velocity, (slots, &inverse_mass)) in velocities.iter_mut().zip(own) {
+        let RowChunk {
+            nodes,
+            first,
+            lists: [velocities],
+        } = rows;
+        let gravity = four(simd, update.gravity.to_array());
+        for Run { ids, rows } in threads::runs(nodes, first) {
+            let slots = &self.slots.as_slice()[ids.clone()];
+            let nodes = slots.iter().zip(&update.inverse_mass[ids]);
+            for (velocity, (slots, &inverse_mass)) in velocities[rows].iter_mut().zip(nodes) {
                 if inverse_mass != 0.0 {
                     let force = sum(simd, &self.forces, slots, D::N);
                     let change = (force * inverse_mass + gravity) * update.duration;
-                    let changed = f32x4::load_array(simd, velocity.to_array()) + change;
+                    let changed = four(simd, velocity.to_array()) + change;
                     *velocity = Row::from_array(changed.to_array());
                 }
             }

@@ -3,7 +3,7 @@
 use super::SoftBody;
 use crate::foundation::dim::{Dim, DimVector, inner};
 use crate::foundation::ids::ElementId;
-use crate::foundation::threads;
+use crate::foundation::threads::{self, RowChunk, Run};
 use crate::math::lanes::on_widest_lanes;
 use crate::math::row::Row;
 use crate::soft_body::element_forces::VelocityUpdate;
@@ -149,15 +149,15 @@ impl<D: Dim> SoftBody<D> {
         let lists = [&mut self.state.position, &mut self.state.ahead];
         let rows = threads::rows(&self.cache.awake, lists.map(|rows| rows.as_mut_slice()));
         let fastest = threads::map(rows, move |rows| {
+            // Lets the compiler use the instructions of wide lanes for the rows.
             on_widest_lanes!(_simd => {
-                let [positions, ahead] = rows.lists;
+                let RowChunk { nodes, first, lists: [positions, ahead] } = rows;
                 let mut fastest = 0.0f32;
-                for run in threads::runs(rows.nodes) {
-                    let own = run.start - rows.first..run.end - rows.first;
-                    let places = positions[own.clone()].iter_mut().zip(&mut ahead[own]);
-                    let nodes = velocities.as_slice()[run.clone()].iter();
-                    let nodes = nodes.zip(&inverse_mass.as_slice()[run.clone()]);
-                    let nodes = nodes.zip(pieces.of_nodes(run));
+                for Run { ids, rows } in threads::runs(nodes, first) {
+                    let places = positions[rows.clone()].iter_mut().zip(&mut ahead[rows]);
+                    let masses = &inverse_mass.as_slice()[ids.clone()];
+                    let velocities = velocities.as_slice()[ids.clone()].iter();
+                    let nodes = velocities.zip(masses).zip(pieces.of_nodes(ids));
                     for ((position, ahead), ((&velocity, &inverse_mass), piece)) in places.zip(nodes) {
                         let piece = piece.index();
                         let (mut moved, mut lead) = (velocity, lead);
