@@ -10,7 +10,7 @@ use std::thread;
 use std::time::Instant;
 
 /// Number of noisy inputs per door. `cargo xtask fuzz` tries millions.
-const INPUTS: usize = 2000;
+const INPUTS: usize = 5000;
 
 fn found() -> BTreeMap<String, Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("found");
