@@ -48,8 +48,8 @@ impl SpaceStage {
             (side as u32).max(1)
         });
         lock(shared).prepare(device, queue, &mut encoder, world, frame, size);
-        queue.submit([encoder.finish()]);
-        let paint = PaintCallback(shared.clone(), space::Renderer::paint);
+        let paint =
+            PaintCallback::new(shared, space::Renderer::paint).with_commands(encoder.finish());
         ui.painter().add(Callback::new_paint_callback(rect, paint));
     }
 

@@ -113,7 +113,9 @@ impl Studio {
         let target = (*target_format, size_in_pixels);
         let draw = |step: ImageStage<'_>| match step {
             ImageStage::Prepare(encoder) => {
-                { renderer.write() }.update_buffers(device, queue, encoder, &shapes, &screen);
+                let mut renderer = renderer.write();
+                // The world, which is drawn before egui's shapes.
+                queue.submit(renderer.update_buffers(device, queue, encoder, &shapes, &screen));
             }
             ImageStage::Paint(pass) => renderer.read().render(pass, &shapes, &screen),
         };
@@ -182,7 +184,7 @@ mod tests {
 
     #[test]
     #[ignore = "needs a graphics adapter, such as that of mesa-vulkan-drivers; `cargo xtask test` runs it"]
-    fn picture_shows_face_basket_and_caption_in_both_dimensions() {
+    fn picture_shows_body_face_basket_and_caption_in_both_dimensions() {
         let mut studio = Studio::open().expect("a graphics adapter");
         for id in ["classic", "classic-3d"] {
             let round = AnyRound::new(Arc::new(Level::open(id).expect("built-in level opens")));
@@ -199,6 +201,10 @@ mod tests {
             assert!(picture.chunks(4).all(|pixel| pixel[3] == 255), "{id}");
             let (world, below) = (0..300, 300..height as usize);
             let [eyes, wood, letters] = [[74, 44, 42], [216, 171, 110], [74, 54, 52]];
+            let red = picture
+                .chunks(4)
+                .filter(|pixel| pixel[0] > pixel[1].saturating_add(60));
+            assert!(red.count() > 3000, "{id}: no body");
             assert!(count(&picture, world.clone(), eyes) > 30, "{id}: no eyes");
             assert!(count(&picture, world, wood) > 200, "{id}: no bars");
             assert!(count(&picture, below, letters) > 20, "{id}: no letters");

@@ -126,20 +126,15 @@ impl Stage {
         };
         let RenderState { device, queue, .. } = &self.state;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let shared = self.renderer.clone();
-        let mut renderer = lock(&shared);
-        renderer.prepare(device, queue, &mut encoder, round.world(), &frame, size);
-        queue.submit([encoder.finish()]);
+        lock(&self.renderer).prepare(device, queue, &mut encoder, round.world(), &frame, size);
         let painter = ui.painter();
-        let paint = |half| {
-            let paint = PaintCallback(self.renderer.clone(), half);
-            painter.add(Callback::new_paint_callback(view.rect, paint));
-        };
-        paint(Renderer::paint_bodies);
+        let add = |callback| painter.add(Callback::new_paint_callback(view.rect, callback));
+        let callback = |paint| PaintCallback::new(&self.renderer, paint);
+        add(callback(Renderer::paint_bodies).with_commands(encoder.finish()));
         for face in faces(round, look) {
             face.paint(painter, view);
         }
-        paint(Renderer::paint_rigid);
+        add(callback(Renderer::paint_rigid));
         glow::draw(painter, round, look);
         if let Some(AnyRound::Plane(ghost)) = look.ghost {
             self.draw_ghost(painter, ghost, look);

@@ -12,6 +12,7 @@ use super::writer::Writer;
 use crate::records::Records;
 use crate::settings::Settings;
 use crate::words::Language;
+use std::collections::VecDeque;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -35,8 +36,10 @@ pub struct Files {
     usual: Settings,
     /// Text of the settings to be written, and the remaining time until it is written [s].
     resting: Option<(String, f32)>,
-    /// Progress of the current picture [%].
-    developed: Option<Arc<AtomicU32>>,
+    /// Queue of photos and clips. The first one is being made.
+    picture_queue: VecDeque<(Kind, Arc<Replay>)>,
+    /// Progress of the picture that is being made [%].
+    developed: Arc<AtomicU32>,
     pictures: Pictures,
     /// Whether a failure was reported and no write has succeeded since.
     is_failing: bool,
@@ -122,7 +125,8 @@ impl Files {
             darkroom: Writer::new(),
             usual: Settings::default(),
             resting: None,
-            developed: None,
+            picture_queue: VecDeque::new(),
+            developed: Arc::default(),
             pictures: Pictures::default(),
             is_failing: false,
         }
@@ -237,13 +241,25 @@ impl Files {
             .write(move || save_replay(&*storage, &replay), JobResult::Replay);
     }
 
-    /// Makes and saves a photo or clip of a round, unless another one is in progress.
+    /// Queues a photo or clip of a round to be made and saved, unless the same one is in the queue.
     pub fn save_picture(&mut self, kind: Kind, replay: Arc<Replay>) {
-        if self.developed.is_some() {
+        let picture = (kind, replay);
+        if self.picture_queue.contains(&picture) {
             return;
         }
+        self.picture_queue.push_back(picture);
+        if self.picture_queue.len() == 1 {
+            self.make_picture();
+        }
+    }
+
+    /// Begins to make the first picture of the queue, if there is one.
+    fn make_picture(&mut self) {
+        let Some((kind, replay)) = self.picture_queue.front().cloned() else {
+            return;
+        };
         let developed = Arc::new(AtomicU32::new(0));
-        self.developed = Some(developed.clone());
+        self.developed = developed.clone();
         let (storage, pictures) = (self.storage.clone(), self.pictures.clone());
         self.darkroom.develop(move || async move {
             let stem = stem_of(&replay);
@@ -267,10 +283,10 @@ impl Files {
         self.writer.write(job, JobResult::Note);
     }
 
-    /// Progress of the current photo or clip, 0 to 1. `None` if none is in progress.
+    /// Progress of the photo or clip that is being made, 0 to 1. `None` if there is none.
     pub fn picture_progress(&self) -> Option<f32> {
-        let developed = self.developed.as_ref()?;
-        Some(developed.load(Ordering::Relaxed) as f32 / 100.0)
+        let share = self.developed.load(Ordering::Relaxed) as f32 / 100.0;
+        (!self.picture_queue.is_empty()).then_some(share)
     }
 
     /// Advances the time by `seconds` [s]. Returns the results of finished jobs.
@@ -291,12 +307,20 @@ impl Files {
         self.news(done)
     }
 
-    /// Writes all pending data and waits until it is written.
+    /// Writes all pending data and waits until it is written. The pictures of the queue are made, too, which can take
+    /// some seconds each.
     pub fn finish(&mut self) -> Vec<StorageEvent> {
         self.write_settings();
-        let mut done = self.writer.finish();
-        done.extend(self.darkroom.finish());
-        self.news(done)
+        let done = self.writer.finish();
+        let mut news = self.news(done);
+        // The news about a picture starts the next one.
+        loop {
+            let done = self.darkroom.finish();
+            if done.is_empty() {
+                return news;
+            }
+            news.extend(self.news(done));
+        }
     }
 
     /// Writes all pending data at the end of the program.
@@ -333,7 +357,8 @@ impl Files {
         let mut news = Vec::new();
         for done in done {
             if let JobResult::Picture(_) = done {
-                self.developed = None;
+                self.picture_queue.pop_front();
+                self.make_picture();
             }
             match done {
                 JobResult::Level(Ok(Ok(level))) => news.push(StorageEvent::Level(level)),

@@ -284,7 +284,7 @@ fn random_input_causes_no_fault() {
             game.update(2.0);
         }
         seen.insert(format!("{:?}", screen(&window)));
-        window.step();
+        frames(&mut window, 1);
         check(&window.state().game, frame);
     }
     assert!(seen.len() >= 6, "{seen:?}");

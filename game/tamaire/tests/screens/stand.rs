@@ -56,8 +56,14 @@ impl StandController for Shared {
     }
 }
 
-/// Opens a stand with the usual configuration file, changed by text replacements.
+/// Opens a stand with the usual configuration file, changed by text replacements, in a window with few pixels, which draws
+/// quickly.
 fn shown(size: Vec2, changes: &[(&str, &str)]) -> Shown {
+    shown_with_pixels(size, 0.25, changes)
+}
+
+/// Opens a stand like [`shown`] with `pixels` pixels per point.
+fn shown_with_pixels(size: Vec2, pixels: f32, changes: &[(&str, &str)]) -> Shown {
     let folder = folder();
     let mut text = DEFAULT_CONFIG.replace(
         "#folder = \"/var/lib/tam\"",
@@ -75,7 +81,7 @@ fn shown(size: Vec2, changes: &[(&str, &str)]) -> Shown {
     let builder = Harness::builder()
         .with_size(size)
         .wgpu()
-        .with_pixels_per_point(1.0);
+        .with_pixels_per_point(pixels);
     let builder = builder.with_step_dt(DEFAULT_TICK).with_render_cursor(false);
     let builder = builder.with_theme(egui::Theme::Light);
     let mut window = builder.build_eframe(|context| {
@@ -352,13 +358,13 @@ fn staff_enters_pin_and_changes_settings() {
     );
 }
 
-/// Opens a stand with a page for QR codes.
+/// Opens a stand with a page for QR codes, and with enough pixels to draw them.
 fn with_codes(size: Vec2) -> Shown {
     let page = (
         "#page = \"https://…/\"",
         "page = \"https://museum.example/tamaire/\"",
     );
-    shown(size, &[page])
+    shown_with_pixels(size, 0.5, &[page])
 }
 
 #[test]
@@ -589,7 +595,7 @@ fn stand_seen() {
                 ("#pin = \"…\"", "pin = \"2004\"".into()),
             ];
             let changes: Vec<_> = changes.iter().map(|(a, b)| (*a, b.as_str())).collect();
-            let mut shown = shown(size, &changes);
+            let mut shown = shown_with_pixels(size, 1.0, &changes);
             let save = |shown: &mut Shown, what: &str| {
                 let image = shown.window.render().unwrap();
                 image
