@@ -158,15 +158,11 @@ const TEST: &[Step] = &[
         "the studio failed, or there is no graphics adapter, such as that of mesa-vulkan-drivers; see above",
     ),
     (
-        "test --workspace --all-features --test validation -- --ignored",
-        "a check of the mechanics failed, or docs/validation.md is out of date, see above",
-    ),
-    (
         "test --workspace --all-features --doc",
         "an example in the documentation failed or did not compile, see above",
     ),
     (
-        "test --release --lib --test native --test checks --package fuwafuwa --package determinism_checks --all-features",
+        "test --release --test native --test checks --package fuwafuwa --package determinism_checks --all-features",
         "passes in debug but not in release: look for side effects inside a debug_assert!, \
          and for sums whose order depends on the number of threads",
     ),

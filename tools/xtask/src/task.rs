@@ -39,8 +39,8 @@ tasks:
   package --build  check them, and build each from its package with the minimum supported Rust
   rapier           check that tools/against_rapier, a separate workspace, compiles
   bevy             check plugins/bevy_fuwafuwa, a separate workspace: formatting, lints, tests
-                   without a window, documentation, and compilation of its examples
-  bevy --pictures  render pictures of its scene on a virtual display
+                   without a window, documentation
+  bevy --pictures  lint its examples, and render pictures of their scene on a virtual display
   help             print this text, as --help does after any task; help of the game:
                    play -- --help
 

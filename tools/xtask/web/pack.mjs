@@ -1,9 +1,8 @@
-// Packs the folder for a web server: optimises the module, puts immutable files into a folder named by a hash of the contents,
+// Packs the folder for a web server: puts immutable files into a folder named by a hash of the contents,
 // and prints the sizes of the compressed files.
 // usage: node pack.mjs STAGE PAGE LICENCES OUT [ADDRESS]
 //   STAGE: output of wasm-bindgen, and sound.wasm; PAGE: game/tamaire/web; LICENCES: text file; OUT: the folder, which is replaced;
 //   ADDRESS: address of the page
-import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -14,23 +13,12 @@ import { brotli } from "./compress.mjs";
 const [stage, page, licences, out, address] = process.argv.slice(2);
 const here = fileURLToPath(new URL(".", import.meta.url));
 
-/** Required WebAssembly features. page.js tests for SIMD; browsers with SIMD have the others, too. */
-const FEATURES = ["simd", "bulk-memory", "sign-ext", "mutable-globals", "nontrapping-float-to-int", "reference-types", "multivalue"];
-
 /** Files of the page with fixed names, because they are referred to from outside. */
 const NAMED = ["index.html", "sw.js", "manifest.webmanifest", "icon.svg", "icon-192.png", "icon-512.png"];
 /** Font that the page fetches on demand. */
 const JAPANESE = join(here, "../../../apps/app_shell/fonts/MPLUSRounded1c-Bold-japanese.ttf");
 /** Image for link previews. */
 const PREVIEW = join(here, "../../../docs/game-squeezed.png");
-
-function optimised(/** @type {string} */ name) {
-  const file = join(stage, `${name}.opt.wasm`);
-  const flags = FEATURES.map((feature) => `--enable-${feature}`);
-  const program = join(here, "node_modules/.bin/wasm-opt");
-  execFileSync(program, [...flags, "-O2", join(stage, `${name}.wasm`), "-o", file], { stdio: "inherit" });
-  return readFileSync(file);
-}
 
 /** @type {Map<string, Buffer>} */
 const files = new Map();
@@ -40,8 +28,8 @@ for (const name of readdirSync(page, { withFileTypes: true })) {
   }
 }
 files.set("tamaire.js", readFileSync(join(stage, "tamaire.js")));
-files.set("tamaire.wasm", optimised("tamaire_bg"));
-files.set("sound.wasm", optimised("sound"));
+files.set("tamaire.wasm", readFileSync(join(stage, "tamaire_bg.wasm")));
+files.set("sound.wasm", readFileSync(join(stage, "sound.wasm")));
 files.set("japanese.ttf", readFileSync(JAPANESE));
 const parts = {
   game: "./tamaire.js",

@@ -16,6 +16,9 @@ fn main() -> ExitCode {
     let mut bindgen = Bindgen::new();
     let made = bindgen
         .input_path(module)
+        // A fifth of the module, used by debuggers only.
+        .remove_name_section(true)
+        .remove_producers_section(true)
         .typescript(false)
         .web(true)
         .and_then(|bindgen| bindgen.generate(folder));

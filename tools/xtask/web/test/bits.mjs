@@ -24,8 +24,9 @@ export async function checkBits(browsers, module) {
       await checkReplays(name, checks, recorded);
       const written = join(folder, name);
       mkdirSync(written);
-      // Each browser plays a series of its own, different from the native one.
-      for (const game of await checks.call("series", 1 + index)) {
+      // Each browser plays a third of a series of its own, different from the native one.
+      const series = await checks.call("series", 1 + index);
+      for (const game of series.filter((_, round) => round % 3 === index)) {
         writeFileSync(join(written, `${game}.tamaire`), await checks.call("record", game));
       }
       await checks.close();

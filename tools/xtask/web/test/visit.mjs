@@ -64,9 +64,10 @@ export class Visit {
   /**
    * @param {import("puppeteer-core").Browser | import("puppeteer-core").BrowserContext} browser
    * @param {string} address
-   * @param {{size?: [number, number], isTouch?: boolean, before?: () => void}} [options]
+   * @param {{size?: [number, number], isTouch?: boolean, before?: () => void}} [options] The default size is small, because
+   *   software draws each pixel.
    */
-  static async begin(browser, address, { size: [width, height] = [1280, 800], isTouch = false, before } = {}) {
+  static async begin(browser, address, { size: [width, height] = [800, 500], isTouch = false, before } = {}) {
     const visit = new Visit(await browser.newPage());
     await visit.page.setViewport({ width, height, isMobile: isTouch, hasTouch: isTouch });
     if (before) {
