@@ -14,6 +14,8 @@ use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::disk::open_scene;
 use serde::Serialize;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Measure speed and memory on this machine.
@@ -34,7 +36,8 @@ pub struct Arguments {
     /// 2D and 32 in 3D.
     #[arg(long, value_parser = clap::value_parser!(u16).range(8..=512))]
     n: Option<u16>,
-    /// Number of threads for large bodies. It does not change results.
+    /// Number of threads for large bodies and many bodies. It does not change results. Each thread is pinned to a
+    /// logical processor of its own, if there are enough of them.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: u8,
     /// With --against rapier: number of frames; default 300, or 240 for `torn`.
@@ -73,8 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     if arguments.against == Some(Rival::Rapier) {
         return rapier::run(&for_rapier(arguments));
     }
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.into());
-    let measures = threads.build()?.install(|| measures(arguments))?;
+    let measures = pinned(arguments.threads.into())?.install(|| measures(arguments))?;
     if arguments.json {
         print_json(&measures)?;
         return Ok(ExitCode::SUCCESS);
@@ -94,6 +96,38 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     }
     output::print(&table(&rows, &[false, true, true, true, false]))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Creates a pool of threads. Several threads are each pinned to a logical processor of their own, because two threads on
+/// one processor would be as slow as one. Prints whether they are pinned.
+fn pinned(threads: usize) -> Result<rayon::ThreadPool> {
+    let cores = core_affinity::get_core_ids().unwrap_or_default();
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    if threads == 1 {
+        return Ok(builder.build()?);
+    }
+    if cores.len() < threads {
+        output::warn(format!(
+            "threads are not pinned: {threads} threads on {} processors",
+            cores.len()
+        ));
+        return Ok(builder.build()?);
+    }
+    let is_pinned = Arc::new(AtomicBool::new(true));
+    let pinned = is_pinned.clone();
+    let pool = builder.start_handler(move |index| {
+        if !core_affinity::set_for_current(cores[index]) {
+            pinned.store(false, Ordering::Relaxed);
+        }
+    });
+    let pool = pool.build()?;
+    // Each thread has started once it has run this.
+    pool.broadcast(|_| ());
+    output::warn(match is_pinned.load(Ordering::Relaxed) {
+        true => format!("threads, each pinned to a logical processor: {threads}"),
+        false => "threads are not pinned: the system does not allow it".to_string(),
+    });
+    Ok(pool)
 }
 
 /// Returns the arguments for the program that runs Rapier.
@@ -127,7 +161,7 @@ fn ball<D: Dim>(n: usize) -> Result<Vec<Measure>> {
 }
 
 fn usual(progress: &Progress) -> Result<Vec<Measure>> {
-    progress.expect(20);
+    progress.expect(21);
     let mut measures = Vec::new();
     let mut add = |measured: Result<Vec<Measure>>| -> Result<()> {
         measures.extend(measured?);
@@ -146,7 +180,9 @@ fn usual(progress: &Progress) -> Result<Vec<Measure>> {
         add(one(release_time::<Dim2>(n)))?;
     }
     add(one(release_time::<Dim3>(64)))?;
-    for name in ["drop", "drop-3d", "tear", "diced", "pile", "tear-3d"] {
+    for name in [
+        "drop", "drop-3d", "tear", "diced", "pile", "tear-3d", "heap-3d",
+    ] {
         add(scene(name, &[], &Progress::new()))?;
     }
     add(one(pushed_ball::<Dim3>(64)))?;

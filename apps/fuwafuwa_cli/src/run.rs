@@ -24,7 +24,7 @@ const HUNDREDTHS: u16 = 5;
 /// Run a scene, given by name or TOML file.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Named scene (drop, drop-3d, squeeze, tear, tear-3d, diced, pile, pile-3d, stack, core, ring-3d) or
+    /// Named scene (drop, drop-3d, squeeze, tear, tear-3d, diced, pile, pile-3d, stack, core, ring-3d, heap-3d) or
     /// file.
     scene: String,
     /// Number of ticks of 1/60 s; defaults to the duration in the scene.

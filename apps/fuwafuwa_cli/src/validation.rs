@@ -68,19 +68,20 @@ pub fn write(files: &[ReportFile]) -> Result<()> {
 }
 
 /// Returns the differences of the files from those on the disk, as messages: the section of each changed line of the
-/// Markdown file, and each picture.
-pub fn differences(files: &[ReportFile]) -> Vec<String> {
+/// Markdown file, and each picture. Unless the report is complete, its table of contents and the sections that only the
+/// file on the disk has are not compared.
+pub fn differences(files: &[ReportFile], is_complete: bool) -> Vec<String> {
     let mut differences = Vec::new();
     for ReportFile { path, text } in files {
         let name = path.display();
         match fs::read_to_string(path) {
             Ok(found) if found == *text => {}
             Ok(found) if path.extension().is_some_and(|extension| extension == "svg") => {
-                let count = changed(&found, text).len();
+                let count = changed(&found, text, true).len();
                 differences.push(format!("{name}: {count} lines of the picture differ"));
             }
             Ok(found) => {
-                let lines = changed(&found, text).into_iter();
+                let lines = changed(&found, text, is_complete).into_iter();
                 differences.extend(lines.map(|line| format!("{name}: {line}")));
             }
             Err(error) => differences.push(format!("{name}: {error}")),
@@ -89,9 +90,13 @@ pub fn differences(files: &[ReportFile]) -> Vec<String> {
     differences
 }
 
-/// Returns a message for each line of `text` that differs from `found`. Lines are compared within their sections.
-fn changed(found: &str, text: &str) -> Vec<String> {
-    let [found, text] = [found, text].map(sections_of);
+/// Returns a message for each line of `text` that differs from `found`. Lines are compared within their sections. Unless
+/// `text` is complete, what stands before its first section is not compared, and further sections of `found` are allowed.
+fn changed(found: &str, text: &str, is_complete: bool) -> Vec<String> {
+    let [found, mut text] = [found, text].map(sections_of);
+    if !is_complete {
+        text.remove(0);
+    }
     let mut messages = Vec::new();
     for (heading, lines) in &text {
         let Some((_, old)) = found.iter().find(|(name, _)| name == heading) else {
@@ -109,7 +114,7 @@ fn changed(found: &str, text: &str) -> Vec<String> {
     }
     let surplus = found
         .iter()
-        .filter(|(name, _)| text.iter().all(|(heading, _)| heading != name));
+        .filter(|(name, _)| is_complete && text.iter().all(|(heading, _)| heading != name));
     messages.extend(surplus.map(|(name, _)| format!("the section \"{name}\" belongs to no check")));
     messages
 }
@@ -134,8 +139,8 @@ fn markdown(folder: &str, sections: &[Section]) -> String {
     let mut text = String::from(
         "# Validation\n\n\
          What `fuwafuwa check` measures, beside theory, published values, or a second way to compute. A program wrote this\n\
-         page: `cargo run --package fuwafuwa_cli -- check all --report docs/validation.md`. `cargo xtask test` compares it\n\
-         with new measurements.\n\n\
+         page: `cargo run --package fuwafuwa_cli -- check all --report docs/validation.md`. `cargo xtask test` compares\n\
+         the quick checks with new measurements.\n\n\
          Pictures show measured points upon the curve of the reference. Where there is no curve, they show the deviation\n\
          from the reference in units of its bound: all points must lie in the green band.\n\n\
          | check | values | passed | for comparison |\n| --- | --- | --- | --- |\n",
@@ -229,10 +234,10 @@ fn picture(findings: &Findings) -> String {
 mod tests {
     use super::*;
 
-    fn section(value: f64) -> Section {
+    fn section(name: &str, value: f64) -> Section {
         let outcome = Outcome::near("twice two".into(), value, 4.0, 0.08);
         Section {
-            name: "product".into(),
+            name: name.into(),
             about: "Products must be right.".into(),
             findings: vec![outcome].into(),
         }
@@ -242,10 +247,10 @@ mod tests {
     fn changed_row_is_named_with_its_section() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("report.md");
-        let written = files(&path, &[section(4.01)]);
+        let written = files(&path, &[section("product", 4.01)]);
         write(&written).unwrap();
-        assert_eq!(differences(&written), Vec::<String>::new());
-        let found = differences(&files(&path, &[section(4.02)]));
+        assert!(differences(&written, true).is_empty());
+        let found = differences(&files(&path, &[section("product", 4.02)]), true);
         assert!(
             found[0].contains("product: expected \"| 1 | twice two | 4.01 | 4 | ± 2 % | yes |\""),
             "{found:?}"
@@ -257,10 +262,34 @@ mod tests {
     }
 
     #[test]
+    fn part_of_a_report_is_compared_with_its_own_sections() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("report.md");
+        write(&files(
+            &path,
+            &[section("sum", 4.01), section("product", 4.01)],
+        ))
+        .unwrap();
+        let part = |value| files(&path, &[section("product", value)]);
+        assert!(differences(&part(4.01), false).is_empty());
+        let complete = differences(&part(4.01), true);
+        let last = complete.last().unwrap();
+        assert!(last.contains("\"sum\" belongs to no check"), "{complete:?}");
+        // The changed row, and the picture.
+        assert_eq!(differences(&part(4.02), false).len(), 2);
+        let other = files(&path, &[section("quotient", 4.01)]);
+        let missing = differences(&other, false);
+        assert!(
+            missing[0].contains("\"quotient\" is missing"),
+            "{missing:?}"
+        );
+    }
+
+    #[test]
     fn unchanged_files_are_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("report.md");
-        let written = files(&path, &[section(4.01)]);
+        let written = files(&path, &[section("product", 4.01)]);
         write(&written).unwrap();
         let time = |file: &ReportFile| fs::metadata(&file.path).unwrap().modified().unwrap();
         let before: Vec<_> = written.iter().map(time).collect();

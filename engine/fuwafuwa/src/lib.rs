@@ -28,7 +28,7 @@
 //! # Features
 //! All features are off by default.
 //! - `serde`: saves and loads worlds, see the module `snapshot`
-//! - `parallel`: steps large bodies on several threads, with bitwise identical results
+//! - `parallel`: steps large bodies and many bodies on several threads, with bitwise identical results
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 // In comments, units and sources stand in brackets, for example [m] and [Endo 2004, §3.1]. Rustdoc takes such

@@ -31,10 +31,11 @@ mod sleep_flags;
 mod stiff_body;
 
 use crate::error::{Error, require};
-use crate::foundation::arena::{Arena, SoftBodyHandle};
+use crate::foundation::arena::{Arena, BodySlot, SoftBodyHandle};
 use crate::foundation::dim::{Dim, DimVector, Point};
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{ElementId, NodeId};
+use crate::foundation::threads;
 use crate::material::Material;
 use crate::soft_body::element_forces::{ElementBatches, Row};
 use crate::soft_body::element_law::Law;
@@ -56,6 +57,19 @@ use glam::Vec3;
 
 /// Arena of the soft bodies of a world.
 pub type SoftBodies<D> = Arena<SoftBodyHandle, SoftBody<D>>;
+
+/// Calls `work` for each soft body, on several threads if the bodies have many awake nodes in all. Returns the results
+/// in the order of the slots.
+pub fn for_each_body<D: Dim, R: Send>(
+    bodies: &mut SoftBodies<D>,
+    work: impl Fn(BodySlot, &mut SoftBody<D>) -> R + Sync,
+) -> Vec<R> {
+    threads::map_items(
+        bodies.by_slot_mut(),
+        |(_, body)| body.cache.awake.len(),
+        |(slot, body)| work(slot, body),
+    )
+}
 
 /// Soft body: voxels, elastic elements and nodes, whole or torn into pieces.
 #[derive(Clone, Debug)]

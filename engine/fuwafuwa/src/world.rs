@@ -26,13 +26,14 @@ use crate::foundation::arena::{BodySlot, RigidBodyHandle, RigidSlot};
 use crate::foundation::dim::{Dim, Dim2, Dim3, DimVector};
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{IndexVec, PieceId};
+use crate::foundation::threads;
 use crate::fracture::crack_growth::{Failure, failures};
 use crate::fracture::knife::{KnifeState, Knives};
 use crate::object_ref::ObjectRef;
 use crate::query::query_cache::QueryCache;
 use crate::rigid_body::RigidBodies;
 use crate::soft_body::damping::{PieceDamping, apply_damping, motions};
-use crate::soft_body::{SoftBodies, SoftBody};
+use crate::soft_body::{SoftBodies, SoftBody, for_each_body};
 use crate::world::fast_impacts::SlowedPieces;
 use crate::world::sleep::{
     all_motions, fall_asleep, fall_asleep_rigid, filter_centres, pressed_sleepers, wake,
@@ -153,6 +154,12 @@ impl<D: Dim> World<D> {
     /// ```
     #[inline(never)]
     pub fn step_with(&mut self, hooks: &mut Hooks<'_, D>) -> StepReport {
+        let awake = self.bodies.iter().map(|body| body.awake_nodes().len());
+        threads::in_pool(awake.sum(), || self.advance(hooks))
+    }
+
+    /// Advances the world by one tick, on the calling thread and others of its pool.
+    fn advance(&mut self, hooks: &mut Hooks<'_, D>) -> StepReport {
         self.events.clear();
         let substeps = self.substeps();
         let duration = self.config.tick / substeps as f32;
@@ -231,7 +238,7 @@ impl<D: Dim> World<D> {
     }
 
     fn start_tick(&mut self) {
-        self.bodies.iter_mut().for_each(SoftBody::start_tick);
+        for_each_body(&mut self.bodies, |_, body| body.start_tick());
         for rigid in self.rigids.iter_mut() {
             rigid.start_tick(self.config.tick);
         }
@@ -254,8 +261,8 @@ impl<D: Dim> World<D> {
     /// Splits overstrained nodes and remodels the elements around them.
     fn fracture(&mut self, report: &mut StepReport) {
         let duration = self.config.fracture_interval();
-        for (id, body) in self.bodies.entries_mut() {
-            let failures = failures(body, duration);
+        let failures = for_each_body(&mut self.bodies, |_, body| failures(body, duration));
+        for ((id, body), failures) in self.bodies.entries_mut().zip(failures) {
             if failures.is_empty() {
                 continue;
             }
@@ -279,11 +286,12 @@ impl<D: Dim> World<D> {
     fn damp(&mut self) {
         let interval = self.config.fracture_interval();
         let touching = self.pieces_in_contact();
-        for (slot, body) in self.bodies.by_slot_mut() {
+        let drag = self.config.drag;
+        for_each_body(&mut self.bodies, |slot, body| {
             body.refresh_awake();
             let motions = motions(body);
             let vibration = body.mass_damping().unwrap_or(0.0);
-            let (drag, rolling_resistance) = (self.config.drag, body.rolling_resistance());
+            let rolling_resistance = body.rolling_resistance();
             let damping = motions.iter().zip(&touching[slot]);
             let damping = damping.map(|(motion, &touches)| {
                 let is_crumb = motion.nodes as usize == D::CORNERS;
@@ -301,19 +309,20 @@ impl<D: Dim> World<D> {
             });
             let damping: Vec<PieceDamping> = damping.collect();
             apply_damping(body, &motions, &damping, interval);
-        }
+        });
     }
 
     /// Integrates velocities: elastic forces, gravity, external field and virtual coupling.
     fn integrate_velocities(&mut self, duration: f32, hooks: &Hooks<'_, D>) {
         let WorldConfig { gravity, drag, .. } = self.config;
         let gravity = gravity.to_vec3();
-        for body in self.bodies.iter_mut() {
+        let field = hooks.field;
+        for_each_body(&mut self.bodies, |_, body| {
             body.apply_forces(duration, gravity);
-            if let Some(field) = hooks.field {
+            if let Some(field) = field {
                 body.apply_field(duration, field);
             }
-        }
+        });
         for rigid in self.rigids.iter_mut() {
             rigid.start_substep(duration);
             if rigid.is_dynamic() && rigid.moves() {
@@ -334,7 +343,7 @@ impl<D: Dim> World<D> {
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let (broken, woken) = joint::solve(&mut self.joints, bodies, rigids, rest, duration);
         let woken_by_knives = self.solve_knife_contacts(duration);
-        self.bodies.iter_mut().for_each(SoftBody::apply_responses);
+        for_each_body(&mut self.bodies, |_, body| body.apply_responses());
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let nearby = &mut self.nearby;
         let mut hits = self.contacts.find(bodies, rigids, nearby, rest, duration);
@@ -347,21 +356,21 @@ impl<D: Dim> World<D> {
 
     /// Integrates positions, then removes the part of the velocities that was added only to resolve overlaps.
     fn integrate_positions(&mut self, duration: f32) {
-        let mut furthest = 0.0f32;
-        for body in self.bodies.iter_mut() {
+        let moved = for_each_body(&mut self.bodies, |_, body| {
             let (_, lead) = body.leads(duration);
-            furthest = furthest.max(body.move_nodes(duration, lead));
-        }
+            body.move_nodes(duration, lead)
+        });
+        let furthest = moved.into_iter().fold(0.0, f32::max);
         self.nearby.pass(duration, furthest);
         for rigid in self.rigids.iter_mut() {
             rigid.integrate_pose(duration);
         }
         if self.joints.iter().next().is_some() || self.contacts.relax_soft_bodies() {
-            { self.bodies.iter_mut() }.for_each(|body| body.measure_responses(duration));
+            for_each_body(&mut self.bodies, |_, body| body.measure_responses(duration));
         }
         let (bodies, rigids) = (&mut self.bodies, &mut self.rigids);
         let broken = joint::relax(&mut self.joints, bodies, rigids, duration);
-        bodies.iter_mut().for_each(SoftBody::apply_responses);
+        for_each_body(bodies, |_, body| body.apply_responses());
         self.contacts
             .relax(bodies, rigids, &mut self.nearby, duration);
         self.remove_broken_joints(broken);
@@ -370,13 +379,16 @@ impl<D: Dim> World<D> {
     /// Quarantines pieces that are non-finite or too fast: resets their nodes to the positions at the start
     /// of the tick, and freezes the pieces permanently. Reports pieces that left their range.
     fn quarantine(&mut self, report: &mut StepReport) {
-        for (id, body) in self.bodies.entries_mut() {
+        let found = for_each_body(&mut self.bodies, |_, body| {
             body.refresh_awake();
-            for piece in body.quarantine(TOP_SPEED) {
+            (body.quarantine(TOP_SPEED), body.pieces_out_of_range())
+        });
+        for (id, (quarantined, out)) in self.bodies.ids().zip(found) {
+            for piece in quarantined {
                 report.quarantined += 1;
                 self.events.push(Event::Quarantined { body: id, piece });
             }
-            let out = body.pieces_out_of_range().into_iter();
+            let out = out.into_iter();
             let out = out.map(|piece| ObjectRef::Piece { body: id, piece });
             self.events
                 .extend(out.map(|object| Event::LeftRange { object }));

@@ -187,7 +187,7 @@ pub struct Scene {
 }
 
 /// Scenes built into this crate: name and text.
-pub const NAMED: [(&str, &str); 11] = [
+pub const NAMED: [(&str, &str); 12] = [
     ("drop", include_str!("../scenes/drop.toml")),
     ("drop-3d", include_str!("../scenes/drop-3d.toml")),
     ("squeeze", include_str!("../scenes/squeeze.toml")),
@@ -199,6 +199,7 @@ pub const NAMED: [(&str, &str); 11] = [
     ("stack", include_str!("../scenes/stack.toml")),
     ("core", include_str!("../scenes/core.toml")),
     ("ring-3d", include_str!("../scenes/ring-3d.toml")),
+    ("heap-3d", include_str!("../scenes/heap-3d.toml")),
 ];
 
 impl Scene {

@@ -5,7 +5,8 @@
 //! changed hash means a changed simulation: give the reason in the commit.
 use fuwafuwa::{
     Blade, Contact, Dim, Dim2, Dim3, DimVector, Event, Grading, Law, MIN_SUBSTEPS, Material,
-    ObjectRef, RigidBody, RigidBodyHandle, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig,
+    ObjectRef, RigidBody, RigidBodyHandle, Shape, SoftBody, Vec3, Velocity, VoxelGrid, World,
+    WorldConfig,
 };
 
 /// Golden scene: a simulation without input, and its expected hash.
@@ -20,7 +21,7 @@ pub struct Scene {
 
 /// All golden scenes. For the hash of a new scene, run the tests, which print the hash that they found. The
 /// table is a static, because a constant would be compiled, engine included, into each crate that uses it.
-pub static SCENES: [Scene; 6] = [
+pub static SCENES: [Scene; 7] = [
     Scene {
         name: "torn disc",
         run: || hash_of_torn_world::<Dim2>(32, 70),
@@ -35,6 +36,11 @@ pub static SCENES: [Scene; 6] = [
         name: "ball large enough for several threads",
         run: || hash_of_torn_world::<Dim3>(44, 40),
         golden: 0x8b6d_0145_1b7d_d8c4,
+    },
+    Scene {
+        name: "balls that are together large enough for several threads",
+        run: hash_of_balls,
+        golden: 0x7eeb_d873_9cab_d08e,
     },
     Scene {
         name: "ball in pieces that lie on each other, few substeps",
@@ -96,6 +102,40 @@ fn hash_of_torn_world<D: Dim>(n: usize, ticks: u32) -> u64 {
         released += world.step().nodes_split;
     }
     assert!(released > 10, "{released} releases: the body must tear");
+    world.hash()
+}
+
+/// Returns the hash of a stack of soft balls that fall on each other.
+fn hash_of_balls() -> u64 {
+    const PITCH: f32 = 1.05;
+    let mut world = floor(WorldConfig {
+        max_substeps: MIN_SUBSTEPS,
+        ..WorldConfig::default()
+    });
+    let ball = VoxelGrid::ball(20, 1.0).expect("the scene is valid");
+    let ball = SoftBody::new(ball, &[Material::default()]).expect("the scene is valid");
+    for place in 0..8u8 {
+        let [x, y, z] = [0, 1, 2].map(|axis: u8| f32::from(place >> axis & 1));
+        // The balls of the upper layer fall onto those of the lower one.
+        let fall = Vec3::NEG_Y * 4.0 * y;
+        let ball = ball.clone().translated(PITCH * Vec3::new(x, y, z));
+        let body = world.add_soft_body(ball).expect("the scene is valid");
+        world
+            .set_velocity(body, Velocity::linear(fall))
+            .expect("the scene is valid");
+    }
+    for _ in 0..8 {
+        world.step();
+    }
+    let bodies = world.soft_bodies();
+    let nodes: usize = bodies.map(|(_, body)| body.mesh().node_count()).sum();
+    let is_large = nodes > 16_384;
+    assert!(is_large, "{nodes} nodes are too few for several threads");
+    let touch = |event: &Event<Dim3>| {
+        use ObjectRef::Piece;
+        matches!(event, Event::ContactForce(contact) if matches!(contact.pair, [Piece { .. }, Piece { .. }]))
+    };
+    assert!(world.events().iter().any(touch), "the balls must press");
     world.hash()
 }
 

@@ -13,7 +13,7 @@ use fuwafuwa::{
     Damping, Dim, Dim2, Dim3, DimVector, Hooks, Material, RigidBody, Shape, SoftBody, StiffBodies,
     Vec2, Vec3, VoxelGrid, World, WorldConfig,
 };
-use std::cell::{Cell, RefCell};
+use std::sync::{Mutex, PoisonError};
 
 /// Widths of the bodies [m].
 const WIDTHS: [f32; 5] = [1.0, 0.1, 0.01, 0.002, 0.0005];
@@ -295,17 +295,19 @@ fn period(treatment: StiffBodies, width: f32) -> Result<(f64, f64)> {
     let mut world = world::<Dim2>(treatment, false)?;
     let body = world.add_soft_body(body)?;
     let scale = world[body].mass_scale();
-    // The field is asked at all nodes in each substep, in their order, which gives the squeeze in each substep.
-    let (count, sum) = (Cell::new(0), Cell::new(0.0f64));
-    let signal = RefCell::new(Vec::new());
+    // The field is evaluated at all nodes in each substep, in their order, because there is only one small body. This
+    // gives the squeeze in each substep.
+    let watched = Mutex::new((0, 0.0f64, Vec::new()));
     let watch = |at: Vec2| {
+        let mut watched = watched.lock().unwrap_or_else(PoisonError::into_inner);
+        let (count, sum, signal) = &mut *watched;
         let offset = (at - middle) / width;
-        let own = rest[count.get()];
-        sum.set(sum.get() + f64::from(own.x * offset.x - own.y * offset.y));
-        count.set(count.get() + 1);
-        if count.get() == rest.len() {
-            signal.borrow_mut().push(sum.replace(0.0));
-            count.set(0);
+        let own = rest[*count];
+        *sum += f64::from(own.x * offset.x - own.y * offset.y);
+        *count += 1;
+        if *count == rest.len() {
+            signal.push(*sum);
+            (*count, *sum) = (0, 0.0);
         }
         Vec2::ZERO
     };
@@ -318,7 +320,7 @@ fn period(treatment: StiffBodies, width: f32) -> Result<(f64, f64)> {
         });
         substep = f64::from(world.config().tick) / f64::from(report.substeps);
     }
-    let signal = signal.borrow();
+    let (.., signal) = watched.into_inner().unwrap_or_else(PoisonError::into_inner);
     let crossings: Vec<f64> = signal
         .windows(2)
         .enumerate()

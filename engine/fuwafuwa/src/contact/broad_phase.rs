@@ -16,6 +16,7 @@ mod node_pairs;
 mod overlapping;
 mod piece_neighbours;
 mod rigid_contacts;
+mod slack;
 mod sphere_pair;
 mod sphere_pairs;
 mod supported_bodies;

@@ -18,7 +18,7 @@ use crate::contact::rest_speeds::RestSpeeds;
 use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::{Dim, inner};
 use crate::foundation::ids::{IndexVec, PieceId};
-use crate::foundation::threads;
+use crate::foundation::threads::{self, CHUNK_SIZE, SEARCHES_PER_CHUNK};
 use crate::rigid_body::RigidBodies;
 use crate::rigid_body::layers::Layers;
 use crate::soft_body::element_forces::Row;
@@ -127,7 +127,7 @@ impl Contacts {
         let (pairs, overlapping) = (&mut nearby.nodes, &nearby.overlapping);
         let has_overlaps = !overlapping.is_empty();
         let travel = pairs.travel;
-        let shares = threads::chunks(&mut pairs.list);
+        let shares = threads::chunks(&mut pairs.list, SEARCHES_PER_CHUNK);
         let found = threads::map(shares, move |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Hits::default());
             for (pair, index) in pairs.iter_mut().zip(first..) {
@@ -265,7 +265,7 @@ impl Contacts {
         let is_scaled = bodies.iter().any(|body| !body.responses().is_empty());
         let widths = bodies.iter().map(|body| body.grid().voxel_size());
         let widest = widths.fold(0.0, f32::max);
-        let shares = threads::chunks(&mut nearby.pairs.list);
+        let shares = threads::chunks(&mut nearby.pairs.list, CHUNK_SIZE);
         let found = threads::map(shares, move |(first, pairs)| {
             let (mut contacts, mut hits) = (Vec::new(), Vec::new());
             for (pair, index) in pairs.iter_mut().zip(first..) {
@@ -280,7 +280,10 @@ impl Contacts {
                 // Skips pairs that are too far apart, which are most pairs, before any more of their data is
                 // read.
                 if is_beyond(widest) || is_beyond(both[0].radius + both[1].radius) {
-                    pair.met_in_front = false;
+                    // Writes only on a change: a write sends the cache line back to memory.
+                    if pair.met_in_front {
+                        pair.met_in_front = false;
+                    }
                     pair.impulse.clear();
                     continue;
                 }

@@ -19,7 +19,7 @@
 
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::NodeId;
-use crate::foundation::threads;
+use crate::foundation::threads::{self, CHUNK_SIZE};
 use crate::fracture::breakable_nodes::{BreakableNode, NodeCut};
 use crate::fracture::near_field::NearField;
 use crate::fracture::nodal_tension::{
@@ -122,7 +122,8 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
     }
     let size = body.grid().voxel_size();
     let mut damage = std::mem::take(body.damage_mut());
-    let found = threads::map(threads::chunks(&mut damage), |(first, damage)| {
+    let shares = threads::chunks(&mut damage, CHUNK_SIZE);
+    let found = threads::map(shares, |(first, damage)| {
         let mut found: Vec<Failure> = Vec::new();
         let mut near = NearField::new(body);
         let nodes = body.breakable_nodes().among(first..first + damage.len());

@@ -7,7 +7,8 @@
 
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, NodeId, PieceId};
-use crate::foundation::threads;
+use crate::foundation::threads::{self, Run};
+use crate::math::lanes::on_widest_lanes;
 use crate::math::row::Row;
 use crate::soft_body::SoftBody;
 use crate::soft_body::momentum::{RigidMotion, inverse};
@@ -256,16 +257,22 @@ pub fn apply_damping<D: Dim>(
         &body.state.position,
         &body.topology.pieces,
     );
-    let rows = threads::rows(&body.cache.awake, [&mut body.state.velocity]);
-    threads::map(rows, |rows| {
-        let [velocities] = rows.lists;
-        for &id in rows.nodes {
-            if inverse_mass[id] != 0.0 {
-                let (kept, rigid_velocity) = &new_velocities[pieces.of_node(id).index()];
-                let velocity = &mut velocities[id.index() - rows.first];
-                *velocity = *velocity * *kept + rigid_velocity.at::<D>(position[id]);
+    let rows = threads::rows(&body.cache.awake, [body.state.velocity.as_mut_slice()]);
+    threads::map(rows, |chunk| {
+        on_widest_lanes!(_simd => {
+            let [velocities] = chunk.lists;
+            for Run { ids, rows } in threads::runs(chunk.ids, chunk.first) {
+                let masses = &inverse_mass.as_slice()[ids.clone()];
+                let places = position.as_slice()[ids.clone()].iter().zip(pieces.of_nodes(ids));
+                let nodes = masses.iter().zip(places);
+                for (velocity, (&inverse_mass, (&position, piece))) in velocities[rows].iter_mut().zip(nodes) {
+                    if inverse_mass != 0.0 {
+                        let (kept, rigid_velocity) = &new_velocities[piece.index()];
+                        *velocity = *velocity * *kept + rigid_velocity.at::<D>(position);
+                    }
+                }
             }
-        }
+        });
     });
 }
 

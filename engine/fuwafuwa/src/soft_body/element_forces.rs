@@ -32,18 +32,13 @@ use crate::math::lanes::{Eight, LANES, four, on_widest_lanes, sum, sum_of_square
 use crate::math::rotation::Rotation;
 use crate::soft_body::element_law::{Elasticity, Law};
 use crate::soft_body::plasticity::Plasticity;
-use batch::{Batch, BatchKey, GROUP, Group, Shared, VACANT, evaluate_best};
+use batch::{BATCHES_PER_SHARE, Batch, BatchKey, Share, Shared, VACANT, evaluate_best};
 use fearless_simd::prelude::*;
-use force_kernel::{Moduli, Scratch};
+use force_kernel::Moduli;
 use glam::{Mat3, Quat, Vec3};
 use plastic_kernel::PlasticFlowLimits;
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
-
-/// Smallest number of batches that are evaluated on several threads. A body with this many batches has about
-/// the smallest number of nodes that [`threads`] distributes over threads.
-#[cfg(feature = "parallel")]
-const MIN_PARALLEL_BATCHES: usize = 1024;
 
 /// Number of padding entries after the last force. A load of four numbers that begins at the last force then
 /// stays in bounds.
@@ -84,8 +79,6 @@ pub struct ElementBatches<D: Dim> {
     /// Padding to four components would make up a quarter (3D) or half (2D) of the memory traffic of a
     /// substep.
     forces: Vec<f32>,
-    /// Scratch memory of the kernel, kept so that the next evaluation need not allocate it.
-    scratch: Option<Box<[Scratch; GROUP]>>,
     /// State of the elements read from a snapshot, until [`ElementBatches::restore`] assigns the elements to
     /// batches.
     #[cfg(feature = "serde")]
@@ -133,7 +126,6 @@ impl<D: Dim> ElementBatches<D> {
             slots: IndexVec::default(),
             nodes: vec![VACANT; LANES],
             forces: vec![0.0; LANES * D::N + PAD],
-            scratch: None,
             #[cfg(feature = "serde")]
             saved: None,
             dim: PhantomData,
@@ -185,28 +177,12 @@ impl<D: Dim> ElementBatches<D> {
     /// Computes the forces of all awake elements. `positions[number - 1]` are the node positions [m] for the
     /// elements of material `number`.
     pub fn evaluate(&mut self, positions: &[&[Row]]) {
-        #[cfg(feature = "parallel")]
-        if self.batches.len() >= MIN_PARALLEL_BATCHES && rayon::current_num_threads() > 1 {
-            use rayon::prelude::*;
-            let groups: Vec<Group> = self.groups().collect();
-            let groups = groups.into_par_iter().with_min_len(8);
-            groups.for_each_init(
-                || [Scratch::EMPTY; GROUP],
-                |scratch, group| evaluate_best::<D>(group, positions, scratch),
-            );
-            return;
-        }
-        let mut kept = self.scratch.take();
-        let scratch = kept.get_or_insert_with(|| Box::new([Scratch::EMPTY; GROUP]));
-        for group in self.groups() {
-            evaluate_best::<D>(group, positions, scratch);
-        }
-        self.scratch = kept;
+        threads::map(self.shares(), |share| evaluate_best::<D>(share, positions));
     }
 
-    /// Splits the batches into groups that write disjoint data, so that the result is bitwise identical for
+    /// Splits the batches into shares that write disjoint data, so that the result is bitwise identical for
     /// any number of threads.
-    fn groups(&mut self) -> impl Iterator<Item = Group<'_>> {
+    fn shares(&mut self) -> impl Iterator<Item = Share<'_>> {
         let Self {
             law,
             moduli,
@@ -226,20 +202,22 @@ impl<D: Dim> ElementBatches<D> {
         };
         let mut forces = &mut self.forces[LANES * D::N..];
         let mut first = LANES;
-        self.batches.chunks_mut(GROUP).map(move |batches| {
-            // Forces are stored in the order of the batches, so the forces of the group end with those of its
-            // last batch.
-            let end = batches.last().map_or(first, Batch::end);
-            let (own, others) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
-            let group = Group {
-                batches,
-                forces: own,
-                first,
-                shared,
-            };
-            (forces, first) = (others, end);
-            group
-        })
+        self.batches
+            .chunks_mut(BATCHES_PER_SHARE)
+            .map(move |batches| {
+                // Forces are stored in the order of the batches, so the forces of the share end with those of its
+                // last batch.
+                let end = batches.last().map_or(first, Batch::end);
+                let (own, others) = std::mem::take(&mut forces).split_at_mut((end - first) * D::N);
+                let share = Share {
+                    batches,
+                    forces: own,
+                    first,
+                    shared,
+                };
+                (forces, first) = (others, end);
+                share
+            })
     }
 
     /// Elastic force [N] on a node in the last evaluation: the sum of the forces of its elements.
@@ -349,10 +327,10 @@ impl<D: Dim> ElementBatches<D> {
         &self,
         simd: S,
         update: &VelocityUpdate,
-        rows: RowChunk<Row, 1>,
+        rows: RowChunk<NodeId, Row, 1>,
     ) {
         let RowChunk {
-            nodes,
+            ids: nodes,
             first,
             lists: [velocities],
         } = rows;
@@ -390,7 +368,8 @@ fn moduli<D: Dim>(elasticities: &[Elasticity]) -> Vec<Moduli> {
 
 #[cfg(test)]
 mod tests {
-    use super::batch::evaluate_group;
+    use super::batch::{GROUP, evaluate_share};
+    use super::force_kernel::Scratch;
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
     use crate::topology::cell_hierarchy::{CellHierarchy, Grading};
@@ -424,9 +403,9 @@ mod tests {
         for _ in 0..3 {
             wide.evaluate(&[&position]);
             let mut scratch = [Scratch::EMPTY; GROUP];
-            for group in other.groups() {
+            for share in other.shares() {
                 let scratch = &mut scratch;
-                simd.vectorize(|| evaluate_group::<D, _>(simd, group, &[&position], scratch));
+                simd.vectorize(|| evaluate_share::<D, _>(simd, share, &[&position], scratch));
             }
         }
         for (id, _) in mesh.nodes() {

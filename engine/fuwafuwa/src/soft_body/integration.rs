@@ -16,8 +16,10 @@ impl<D: Dim> SoftBody<D> {
     /// Symplectic Euler, stable if `duration` is at most [`SoftBody::longest_substep`].
     #[inline(never)]
     pub fn advance(&mut self, duration: f32, gravity: D::Vector) {
-        self.apply_forces(duration, gravity.to_vec3());
-        self.move_nodes(duration, 0.0);
+        threads::in_pool(self.cache.awake.len(), || {
+            self.apply_forces(duration, gravity.to_vec3());
+            self.move_nodes(duration, 0.0);
+        });
     }
 
     /// Adds to velocities the change that elastic forces and gravity [m/s²] cause in `duration` [s].
@@ -73,7 +75,11 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Adds to velocities the change that an acceleration field [m/s²] causes in `duration` [s].
-    pub(crate) fn apply_field(&mut self, duration: f32, field: &dyn Fn(D::Vector) -> D::Vector) {
+    pub(crate) fn apply_field(
+        &mut self,
+        duration: f32,
+        field: &(dyn Fn(D::Vector) -> D::Vector + Sync),
+    ) {
         if self.topology.mass_scale > 1.0 {
             self.apply_field_to_scaled(duration, field);
             return;
@@ -91,7 +97,11 @@ impl<D: Dim> SoftBody<D> {
     }
 
     /// Like [`SoftBody::apply_field`], in a body with a mass scale.
-    fn apply_field_to_scaled(&mut self, duration: f32, field: &dyn Fn(D::Vector) -> D::Vector) {
+    fn apply_field_to_scaled(
+        &mut self,
+        duration: f32,
+        field: &(dyn Fn(D::Vector) -> D::Vector + Sync),
+    ) {
         for index in 0..self.cache.awake.len() {
             let id = self.cache.awake[index];
             let duration = duration * self.pace_share(self.topology.pieces.of_node(id));
@@ -151,7 +161,7 @@ impl<D: Dim> SoftBody<D> {
         let fastest = threads::map(rows, move |rows| {
             // Lets the compiler use the instructions of wide lanes for the rows.
             on_widest_lanes!(_simd => {
-                let RowChunk { nodes, first, lists: [positions, ahead] } = rows;
+                let RowChunk { ids: nodes, first, lists: [positions, ahead] } = rows;
                 let mut fastest = 0.0f32;
                 for Run { ids, rows } in threads::runs(nodes, first) {
                     let places = positions[rows.clone()].iter_mut().zip(&mut ahead[rows]);

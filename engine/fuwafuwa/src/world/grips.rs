@@ -16,7 +16,7 @@ use crate::foundation::hash::hash_state;
 use crate::foundation::ids::NodeId;
 use crate::math::row::Row;
 use crate::rigid_body::shape::Shape;
-use crate::rigid_body::solid::{self, Solid};
+use crate::rigid_body::solid::Solid;
 use crate::rigid_body::{MotionType, RigidState, is_within_reach};
 use crate::soft_body::SoftBody;
 use glam::Vec3;
@@ -275,10 +275,9 @@ impl GripState {
         let places = self.nodes.iter().map(|node| node.place);
         self.region.check().is_ok()
             && self.torque.is_finite()
-            && vectors
-                .into_iter()
-                .chain(places)
-                .all(|vector| vector.is_finite() && solid::flat::<D>(vector) == vector)
+            && vectors.into_iter().chain(places).all(|vector| {
+                vector.is_finite() && crate::rigid_body::solid::flat::<D>(vector) == vector
+            })
     }
 }
 

@@ -6,11 +6,13 @@ use crate::foundation::dim::{Dim, DimVector};
 use crate::rigid_body::{Reaction, RigidBodies};
 use std::marker::PhantomData;
 
-/// Callbacks during a tick; none by default. See [`World::step_with`](crate::World::step_with).
+/// Callbacks during a tick; none by default. See [`World::step_with`](crate::World::step_with). With the feature
+/// `parallel`, several threads may call `field` at the same time and in any order, so it must depend on the position
+/// only. One thread at a time calls `after_substep`.
 pub struct Hooks<'a, D: Dim> {
     /// External acceleration field, added to gravity: acceleration [m/s²] at a world-space position [m]. It
     /// acts on soft bodies and dynamic rigid bodies that are awake. Non-finite values are ignored.
-    pub field: Option<&'a dyn Fn(D::Vector) -> D::Vector>,
+    pub field: Option<&'a (dyn Fn(D::Vector) -> D::Vector + Sync)>,
     /// Called at the end of each substep.
     pub after_substep: Option<&'a mut AfterSubstep<'a, D>>,
 }
@@ -25,7 +27,7 @@ impl<D: Dim> Default for Hooks<'_, D> {
 }
 
 /// Callback after a substep, see [`Hooks::after_substep`].
-pub type AfterSubstep<'a, D> = dyn FnMut(&Substep<'_, D>) + 'a;
+pub type AfterSubstep<'a, D> = dyn FnMut(&Substep<'_, D>) + Send + 'a;
 
 /// State of the world after a substep.
 pub struct Substep<'a, D: Dim> {

@@ -17,8 +17,8 @@ use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{IndexVec, PieceId};
 use crate::rigid_body::{RigidBodies, RigidState};
-use crate::soft_body::SoftBodies;
 use crate::soft_body::damping::{PieceMotion, motions};
+use crate::soft_body::{SoftBodies, for_each_body};
 use glam::Vec3;
 use std::collections::BTreeSet;
 
@@ -40,9 +40,12 @@ pub type Motions = IndexVec<BodySlot, IndexVec<PieceId, PieceMotion>>;
 /// Returns the motions of all pieces, zero for sleeping ones.
 pub fn all_motions<D: Dim>(bodies: &mut SoftBodies<D>) -> Motions {
     let mut all: Motions = bodies.slots().map(|_| IndexVec::default()).collect();
-    for (slot, body) in bodies.by_slot_mut() {
+    let found = for_each_body(bodies, |slot, body| {
         body.refresh_awake();
-        all[slot] = motions(body);
+        (slot, motions(body))
+    });
+    for (slot, motions) in found {
+        all[slot] = motions;
     }
     all
 }

@@ -1,7 +1,7 @@
 //! Spatial hash of points in cubic bins, for finding the points near a position.
 
 use crate::foundation::dim::{Dim, Point};
-use crate::foundation::threads::CHUNK_SIZE;
+use crate::foundation::threads::SEARCHES_PER_CHUNK;
 use crate::math::lanes::{LANES, Lanes, splat};
 use crate::math::row::Row;
 use fearless_simd::prelude::*;
@@ -96,8 +96,8 @@ impl Bins {
     /// Iterates over ranges of bins that threads can search independently.
     pub fn shares(&self) -> impl Iterator<Item = Range<usize>> + use<> {
         let bins = self.start.len() - 1;
-        let firsts = (0..bins).step_by(CHUNK_SIZE);
-        firsts.map(move |first| first..bins.min(first + CHUNK_SIZE))
+        let firsts = (0..bins).step_by(SEARCHES_PER_CHUNK);
+        firsts.map(move |first| first..bins.min(first + SEARCHES_PER_CHUNK))
     }
 
     /// Finds the pairs of points within `reach` [m] of each other, and calls `visit` with their indices in

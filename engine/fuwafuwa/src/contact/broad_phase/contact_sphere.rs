@@ -106,6 +106,12 @@ impl ContactSphere {
         mean::<D, _>(rows, &self.nodes)
     }
 
+    /// Returns the velocity of the sphere [m/s]: the mean velocity of its corner nodes.
+    #[inline]
+    pub fn velocity<D: Dim>(&self, bodies: &SoftBodies<D>) -> Row {
+        self.mean::<D>(bodies.at(self.body).velocities())
+    }
+
     /// Returns whether the voxel of the sphere is a crumb: a piece of its own.
     pub fn is_crumb<D: Dim>(&self) -> bool {
         self.exposed_faces.count_ones() as usize == 2 * D::N

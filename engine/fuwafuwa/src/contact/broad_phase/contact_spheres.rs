@@ -6,6 +6,7 @@ use crate::foundation::arena::BodySlot;
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{ElementId, IndexVec, PieceId};
+use crate::foundation::threads::{self, RowChunk};
 use crate::soft_body::element_forces::Row;
 use crate::soft_body::{SoftBodies, SoftBody};
 use crate::topology::changes::{Bookmark, Changes};
@@ -34,13 +35,13 @@ pub struct Spheres {
     /// For each body, bookmark of the last change of the body that `list` includes.
     #[cfg_attr(feature = "serde", serde(skip))]
     followed: IndexVec<BodySlot, Bookmark>,
-    /// Awake spheres.
+    /// Awake spheres, ascending.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub awake: Vec<SphereId>,
     /// Centres of the spheres [m]; those of sleeping spheres are updated only at the start of a tick.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub centres: IndexVec<SphereId, Row>,
-    /// Close spheres: awake spheres in a pair or in an escape contact. Only close spheres are updated in
+    /// Close spheres, ascending: awake spheres in a pair or in an escape contact. Only close spheres are updated in
     /// every substep.
     #[cfg_attr(feature = "serde", serde(skip))]
     close: Vec<SphereId>,
@@ -53,6 +54,14 @@ pub struct Spheres {
     /// Velocity of each close sphere [m/s], low-pass filtered: see [`Spheres::follow`].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub drift: IndexVec<SphereId, Row>,
+}
+
+/// Spheres to follow in a substep.
+pub enum Followed {
+    /// All awake spheres.
+    Awake,
+    /// The close spheres only.
+    Close,
 }
 
 hash_state! {
@@ -295,6 +304,7 @@ impl Spheres {
                 changed.push(id);
             }
         }
+        self.awake.sort_unstable();
     }
 
     /// Sets the close spheres: those in pairs or escape contacts, whose centres and velocities are updated in
@@ -318,50 +328,52 @@ impl Spheres {
         }
     }
 
-    /// Updates the centres of all awake spheres after a substep of `duration` [s].
-    pub fn move_all<D: Dim>(&mut self, bodies: &SoftBodies<D>, duration: f32) {
-        for at in 0..self.awake.len() {
-            self.follow::<D>(self.awake[at], bodies, duration);
-        }
-    }
-
-    /// Updates the centres of the close spheres after a substep of `duration` [s].
-    pub fn move_close<D: Dim>(&mut self, bodies: &SoftBodies<D>, duration: f32) {
-        for at in 0..self.close.len() {
-            self.follow::<D>(self.close[at], bodies, duration);
-        }
+    /// Updates the centres of the `followed` spheres after a substep of `duration` [s], and the filtered velocities of those
+    /// that are close. The filter uses displacements: velocities at this time have not yet been corrected by contacts.
+    pub fn follow<D: Dim>(&mut self, followed: Followed, bodies: &SoftBodies<D>, duration: f32) {
+        let (list, is_close) = (&self.list, &self.is_close);
+        let spheres = match followed {
+            Followed::Awake => &self.awake,
+            Followed::Close => &self.close,
+        };
+        let lists = [&mut self.centres, &mut self.drift].map(|rows| rows.as_mut_slice());
+        let rows = threads::rows(spheres, lists);
+        threads::map(rows, |RowChunk { ids, first, lists }| {
+            let [centres, drifts] = lists;
+            for &id in ids {
+                let (sphere, row) = (&list[id], id.index() - first);
+                let centre = sphere.mean::<D>(bodies.at(sphere.body).positions());
+                if is_close[id] {
+                    let drift = &mut drifts[row];
+                    let moved = centre - centres[row];
+                    *drift += (moved - *drift * duration) * (1.0 / (DRIFT_TIME + duration));
+                }
+                centres[row] = centre;
+            }
+        });
     }
 
     /// Copies the velocities of the close spheres from the bodies.
     pub fn take_velocities<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
-        for &id in &self.close {
-            self.velocities[id] = self.velocity(id, bodies);
-        }
+        let list = &self.list;
+        let rows = threads::rows(&self.close, [self.velocities.as_mut_slice()]);
+        threads::map(rows, |RowChunk { ids, first, lists }| {
+            let [velocities] = lists;
+            for &id in ids {
+                velocities[id.index() - first] = list[id].velocity(bodies);
+            }
+        });
     }
 
     /// Returns the velocity of a sphere [m/s]: the mean velocity of its corner nodes.
     pub fn velocity<D: Dim>(&self, id: SphereId, bodies: &SoftBodies<D>) -> Row {
-        let sphere = &self.list[id];
-        sphere.mean::<D>(bodies.at(sphere.body).velocities())
+        self.list[id].velocity(bodies)
     }
 
     /// Returns whether elastic forces keep two spheres apart, so that no contact is required.
     pub fn holds(&self, a: SphereId, b: SphereId) -> bool {
         let [a, b] = [a, b].map(|id| self.list[id].site());
         a.is_held_to(&b)
-    }
-
-    /// Updates the centre of a sphere after a substep of `duration` [s], and the filtered velocity if the sphere
-    /// is close. The filter uses displacements: velocities at this time have not yet been corrected by contacts.
-    fn follow<D: Dim>(&mut self, id: SphereId, bodies: &SoftBodies<D>, duration: f32) {
-        let sphere = &self.list[id];
-        let centre = sphere.mean::<D>(bodies.at(sphere.body).positions());
-        if self.is_close[id] {
-            let drift = &mut self.drift[id];
-            let moved = centre - self.centres[id];
-            *drift += (moved - *drift * duration) * (1.0 / (DRIFT_TIME + duration));
-        }
-        self.centres[id] = centre;
     }
 
     fn make_room(&mut self) {

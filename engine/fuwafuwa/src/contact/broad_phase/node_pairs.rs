@@ -3,11 +3,13 @@
 
 use super::bins::Bins;
 use super::known_impulse::Impulse;
+use super::slack::{SlackTest, smaller};
 use super::sphere_pair::MARGIN;
 use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::{Hash, HashState, hash_all, hash_state};
 use crate::foundation::ids::{IndexVec, NodeId, PieceId};
+use crate::foundation::threads::{self, CHUNK_SIZE, RowChunk};
 use crate::rigid_body::solid::Solid;
 use crate::rigid_body::{RigidBodies, RigidState};
 use crate::soft_body::element_forces::Row;
@@ -199,7 +201,7 @@ impl NodePairs {
         for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
             let is_near = |&&(slot, node): &&(BodySlot, NodeId)| {
                 let body = bodies.at(slot);
-                let reach = self.reach(slot, node, body);
+                let reach = reach(self.anchors[slot][node], body, node);
                 let at = body.positions()[node].xyz();
                 rigid.meets(body.layers())
                     && body.mesh().is_alive(node)
@@ -219,7 +221,6 @@ impl NodePairs {
     fn find_all<D: Dim>(&mut self, bodies: &SoftBodies<D>, rigids: &RigidBodies, left: f32) {
         self.changed.clear();
         self.travel = 0.0;
-        self.spare = f32::INFINITY;
         let sizes = bodies.iter().map(|body| body.grid().voxel_size());
         let size = sizes.fold(0.0, f32::max);
         let leeway = |rigid: &RigidState| {
@@ -238,20 +239,25 @@ impl NodePairs {
         self.leeways.extend(rigids.iter().map(leeway));
         self.anchors
             .resize(bodies.slot_count(), IndexVec::default());
-        let mut node_bins = Vec::new();
-        for (slot, body) in bodies.by_slot() {
-            for &node in body.awake_nodes() {
-                self.anchor(slot, node, bodies, left);
-            }
-            let reach = |node| self.reach(slot, node, body);
-            node_bins.push((slot, body, NodeBins::of(body, reach)));
-        }
+        let anchors = self.anchors.entries_mut().zip(bodies.slots());
+        let anchors = anchors.filter_map(|((slot, anchors), body)| Some((slot, body?, anchors)));
+        let node_bins = threads::map_items(
+            anchors,
+            |(_, body, _)| body.awake_nodes().len(),
+            |(slot, body, anchors)| {
+                let spare = anchor_all(body, anchors, left);
+                let reach = |node| reach(anchors[node], body, node);
+                (slot, body, NodeBins::of(body, reach), spare)
+            },
+        );
+        let spares = node_bins.iter().map(|(.., spare)| *spare);
+        self.spare = spares.fold(f32::INFINITY, smaller);
         let mut found = Vec::new();
         let mut near: Vec<NodeId> = Vec::new();
         for ((own, rigid), leeway) in rigids.by_slot().zip(&self.leeways) {
             let met = node_bins.iter();
-            let met = met.filter(|(_, body, _)| rigid.meets(body.layers()));
-            for (slot, body, node_bins) in met {
+            let met = met.filter(|(_, body, ..)| rigid.meets(body.layers()));
+            for (slot, body, node_bins, _) in met {
                 near.clear();
                 node_bins.within(leeway.allowed, rigid.shape(), &mut near);
                 if rigid.moves() && body.awake_nodes().len() < body.mesh().node_count() {
@@ -273,49 +279,36 @@ impl NodePairs {
     /// Adds to `changed` the nodes that have exceeded their allowed distance in `anchors`, and updates
     /// `spare` for the other nodes.
     fn find_beyond_slack<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
-        let mut spare = f32::INFINITY;
-        for (slot, body) in bodies.by_slot() {
-            let Some(anchors) = self.anchors.get(slot.index()) else {
-                continue;
-            };
-            for &node in body.awake_nodes() {
-                let Some(anchor) = anchors.get(node.index()) else {
-                    continue;
-                };
-                let [x, y, z, allowed] = anchor.to_array();
-                let moved = body.positions()[node] - Row::from_array([x, y, z, 0.0]);
-                let moved = moved.dot(moved);
-                if moved > allowed * allowed {
-                    self.changed.push((slot, node));
-                } else {
-                    let left = allowed - moved.sqrt();
-                    spare = if left < spare { left } else { spare };
-                }
-            }
+        let anchors = &self.anchors;
+        let shares = bodies.by_slot().flat_map(|(slot, body)| {
+            let anchors = anchors.get(slot.index());
+            let nodes = body.awake_nodes().chunks(CHUNK_SIZE);
+            nodes.filter_map(move |nodes| Some((slot, body, anchors?, nodes)))
+        });
+        let rows = |(.., nodes): &(_, _, _, &[NodeId])| nodes.len();
+        let tests = threads::map_items(shares, rows, |(slot, body, anchors, nodes)| {
+            let test = SlackTest::of_points(nodes, |node: NodeId| {
+                let [x, y, z, allowed] = anchors.get(node.index())?.to_array();
+                let anchor = Row::from_array([x, y, z, 0.0]);
+                Some((body.positions()[node] - anchor, allowed))
+            });
+            (slot, test)
+        });
+        self.spare = f32::INFINITY;
+        for (slot, test) in tests {
+            let exceeded = test.exceeded.into_iter();
+            self.changed.extend(exceeded.map(|node| (slot, node)));
+            self.spare = smaller(self.spare, test.spare);
         }
-        self.spare = spare;
     }
 
-    /// Stores in `anchors` the position of a node and the distance that it may move in the remaining time
-    /// `left` of the tick [s].
+    /// Sets the anchor of a node of a body, for the remaining time `left` of the tick [s].
     fn anchor<D: Dim>(&mut self, slot: BodySlot, node: NodeId, bodies: &SoftBodies<D>, left: f32) {
         let body = bodies.at(slot);
         let anchors = &mut self.anchors[slot];
         anchors.resize(body.positions().len(), Row::ZERO);
-        let [x, y, z, _] = body.positions()[node].to_array();
-        let speed = body.velocities()[node].length();
-        let allowed = SLACK * body.grid().voxel_size() + speed * left;
-        anchors[node] = Row::from_array([x, y, z, allowed]);
-        self.spare = if allowed < self.spare {
-            allowed
-        } else {
-            self.spare
-        };
-    }
-
-    /// Returns the distance from a resting rigid shape within which a node is paired with that shape [m].
-    fn reach<D: Dim>(&self, slot: BodySlot, node: NodeId, body: &SoftBody<D>) -> f32 {
-        self.anchors[slot][node][3] + margin(body, node)
+        anchors[node] = anchor(body, node, left);
+        self.spare = smaller(self.spare, anchors[node][3]);
     }
 
     /// Replaces the list by the `found` pairs and those old pairs for which `stays` is true. Pairs that were
@@ -341,6 +334,38 @@ impl NodePairs {
         }
         self.list.extend(old.filter(stays));
     }
+}
+
+/// Sets the anchors of all awake nodes of a body, for the remaining time `left` of the tick [s]. Returns the least
+/// distance that one of them may move [m].
+fn anchor_all<D: Dim>(body: &SoftBody<D>, anchors: &mut IndexVec<NodeId, Row>, left: f32) -> f32 {
+    anchors.resize(body.positions().len(), Row::ZERO);
+    let rows = threads::rows(body.awake_nodes(), [anchors.as_mut_slice()]);
+    let allowed = threads::map(rows, |RowChunk { ids, first, lists }| {
+        let [anchors] = lists;
+        let mut least = f32::INFINITY;
+        for &node in ids {
+            let anchor = anchor(body, node, left);
+            anchors[node.index() - first] = anchor;
+            least = smaller(least, anchor[3]);
+        }
+        least
+    });
+    allowed.into_iter().fold(f32::INFINITY, smaller)
+}
+
+/// Returns the position of a node [m], and as the fourth component the distance that the node may move in the
+/// remaining time `left` of the tick [s].
+fn anchor<D: Dim>(body: &SoftBody<D>, node: NodeId, left: f32) -> Row {
+    let [x, y, z, _] = body.positions()[node].to_array();
+    let speed = body.velocities()[node].length();
+    let allowed = SLACK * body.grid().voxel_size() + speed * left;
+    Row::from_array([x, y, z, allowed])
+}
+
+/// Returns the distance from a resting rigid shape within which a node is paired with that shape [m].
+fn reach<D: Dim>(anchor: Row, body: &SoftBody<D>, node: NodeId) -> f32 {
+    anchor[3] + margin(body, node)
 }
 
 /// Returns the distance from a rigid shape within which a node can touch the shape [m]: the node's point of the

@@ -14,14 +14,15 @@
 
 use super::bins::Bins;
 use super::contact_sphere::{ContactSphere, SphereId};
-use super::contact_spheres::Spheres;
+use super::contact_spheres::{Followed, Spheres};
 use super::piece_neighbours::Neighbours;
+use super::slack::{SlackTest, smaller};
 use super::sphere_pair::{SpherePair, merge};
 use super::swept_path::{Path, SLACK, Span, Start, SweptSphere, widened};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::{Hash, HashState, hash_all};
 use crate::foundation::ids::IndexVec;
-use crate::foundation::threads::{self, CHUNK_SIZE};
+use crate::foundation::threads::{self, CHUNK_SIZE, SEARCHES_PER_CHUNK};
 use crate::math::lanes::on_widest_lanes;
 use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
@@ -43,10 +44,6 @@ const COMPARED: usize = 12;
 /// Entry in `loose_at` of a sphere that is found through the bins, and so has no index among the loose
 /// spheres.
 const BINNED: u32 = u32::MAX;
-
-/// Number of spheres that a thread searches at a time. It is smaller than `CHUNK_SIZE`, because the search of
-/// each sphere visits several bins.
-const SEARCHES_PER_CHUNK: usize = CHUNK_SIZE / 8;
 
 /// Pairs of spheres that may touch before their paths end.
 #[derive(Clone, Debug, Default)]
@@ -182,14 +179,14 @@ impl SpherePairs {
             return is_new_tick;
         }
         if self.bins.is_none() || self.elapsed >= self.duration {
-            spheres.move_all(bodies, substep);
+            spheres.follow(Followed::Awake, bodies, substep);
             self.find_all(spheres, bodies);
             return true;
         }
         if self.spare > 0.0 && self.changed.is_empty() && !is_new_tick {
-            spheres.move_close(bodies, substep);
+            spheres.follow(Followed::Close, bodies, substep);
         } else {
-            spheres.move_all(bodies, substep);
+            spheres.follow(Followed::Awake, bodies, substep);
             self.find_beyond_slack(spheres);
         }
         let mut changed = std::mem::take(&mut self.changed);
@@ -208,21 +205,19 @@ impl SpherePairs {
 
     /// Adds spheres that have exceeded their slack to `changed`, and updates `spare` for the other spheres.
     fn find_beyond_slack(&mut self, spheres: &Spheres) {
-        let mut spare = f32::INFINITY;
-        for &sphere in &spheres.awake {
-            let Some(path) = self.paths.get(sphere.index()) else {
-                continue;
-            };
-            let deviation = spheres.centres[sphere] - path.at(self.elapsed);
-            let (deviation, slack) = (deviation.dot(deviation), slack_of(spheres, sphere));
-            if deviation > slack * slack {
-                self.changed.push(sphere);
-            } else {
-                let left = slack - deviation.sqrt();
-                spare = if left < spare { left } else { spare };
-            }
+        let (paths, elapsed) = (&self.paths, self.elapsed);
+        let tests = threads::map(spheres.awake.chunks(CHUNK_SIZE), |share| {
+            SlackTest::of_points(share, |sphere: SphereId| {
+                let path = paths.get(sphere.index())?;
+                let deviation = spheres.centres[sphere] - path.at(elapsed);
+                Some((deviation, slack_of(spheres, sphere)))
+            })
+        });
+        self.spare = f32::INFINITY;
+        for test in tests {
+            self.changed.extend(test.exceeded);
+            self.spare = smaller(self.spare, test.spare);
         }
-        self.spare = spare;
     }
 
     /// Resizes the tables for `count` spheres.

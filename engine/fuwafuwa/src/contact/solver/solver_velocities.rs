@@ -6,6 +6,7 @@ use crate::contact::broad_phase::{ContactSphere, mean};
 use crate::foundation::arena::{BodySlot, RigidSlot};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{Id, IndexVec, NodeId};
+use crate::foundation::threads::{self, CHUNK_SIZE};
 use crate::rigid_body::RigidBodies;
 use crate::soft_body::SoftBodies;
 use crate::soft_body::element_forces::Row;
@@ -15,6 +16,9 @@ use glam::Vec3;
 /// Number of nodes in a chunk of `SolverVelocities`. A chunk with any node in contact is copied as a whole.
 /// Larger chunks copy more unused nodes; smaller ones cost more tests.
 const NODES_PER_CHUNK: usize = 16;
+
+/// Number of chunks of [`NODES_PER_CHUNK`] nodes that a thread copies together.
+const TESTS_PER_SHARE: usize = CHUNK_SIZE / NODES_PER_CHUNK;
 
 /// Copy of the velocities of nodes in contact [m/s]. The fourth component is the inverse mass [1/kg], so that
 /// applying an impulse reads one row.
@@ -58,8 +62,10 @@ impl SolverVelocities {
     #[inline(always)]
     pub fn sphere_rows<D: Dim>(&mut self, sphere: &ContactSphere) -> SphereNodeRows {
         let first = self.first[sphere.body];
-        let rows = sphere.nodes.map(|node| row_of(first, node));
-        for row in &rows[..D::CORNERS] {
+        // A loop, because the compiler does not inline `map` for eight nodes.
+        let mut rows = [first; 8];
+        for (row, &node) in rows.iter_mut().zip(&sphere.nodes[..D::CORNERS]) {
+            *row = row_of(first, node);
             self.is_touched[row.index() / NODES_PER_CHUNK] = true;
         }
         rows
@@ -67,38 +73,65 @@ impl SolverVelocities {
 
     /// Copies the velocities of nodes in contact from the bodies.
     pub fn load<D: Dim>(&mut self, bodies: &SoftBodies<D>) {
-        for (slot, body) in bodies.by_slot() {
-            let first = self.first[slot].index();
-            let nodes = body.velocities().chunks(NODES_PER_CHUNK);
-            let nodes = nodes.zip(body.inverse_masses().chunks(NODES_PER_CHUNK));
-            let own = self.rows.as_mut_slice()[first..]
-                .chunks_mut(NODES_PER_CHUNK)
-                .zip(nodes);
-            let touched = &self.is_touched[first / NODES_PER_CHUNK..];
-            for ((rows, (velocities, inverse_mass)), _) in own.zip(touched).filter(|(_, is)| **is) {
-                for (row, (velocity, &inverse_mass)) in
-                    rows.iter_mut().zip(velocities.iter().zip(inverse_mass))
-                {
-                    *row = with_fourth(*velocity, inverse_mass);
+        let mut others = self.rows.as_mut_slice();
+        let is_touched = &self.is_touched;
+        let shares = bodies.by_slot().flat_map(|(slot, body)| {
+            let (velocities, inverse_masses) = (body.velocities(), body.inverse_masses());
+            let rows = velocities.len().next_multiple_of(NODES_PER_CHUNK);
+            let own;
+            (own, others) = std::mem::take(&mut others).split_at_mut(rows);
+            let nodes = velocities
+                .chunks(CHUNK_SIZE)
+                .zip(inverse_masses.chunks(CHUNK_SIZE));
+            let touched =
+                is_touched[self.first[slot].index() / NODES_PER_CHUNK..].chunks(TESTS_PER_SHARE);
+            own.chunks_mut(CHUNK_SIZE).zip(nodes).zip(touched)
+        });
+        let shares = shares.filter(|(_, touched)| touched.contains(&true));
+        threads::map_items(
+            shares,
+            |((rows, _), _)| rows.len(),
+            |((rows, (velocities, inverse_masses)), touched)| {
+                let nodes = velocities.chunks(NODES_PER_CHUNK);
+                let nodes = nodes.zip(inverse_masses.chunks(NODES_PER_CHUNK));
+                let chunks = rows.chunks_mut(NODES_PER_CHUNK).zip(nodes).zip(touched);
+                for ((rows, (velocities, inverse_masses)), _) in chunks.filter(|(_, is)| **is) {
+                    let nodes = velocities.iter().zip(inverse_masses);
+                    for (row, (velocity, &inverse_mass)) in rows.iter_mut().zip(nodes) {
+                        *row = with_fourth(*velocity, inverse_mass);
+                    }
                 }
-            }
-        }
+            },
+        );
         self.scaled.load(bodies, &self.first, self.rows.len());
     }
 
     /// Copies the velocities of nodes in contact back to the bodies.
     pub fn store<D: Dim>(&self, bodies: &mut SoftBodies<D>) {
-        for (slot, body) in bodies.by_slot_mut() {
+        let shares = bodies.by_slot_mut().flat_map(|(slot, body)| {
             let first = self.first[slot].index();
-            let rows = self.rows.as_slice()[first..].chunks(NODES_PER_CHUNK);
-            let own = rows.zip(body.velocities_mut().chunks_mut(NODES_PER_CHUNK));
-            let touched = &self.is_touched[first / NODES_PER_CHUNK..];
-            for ((rows, velocities), _) in own.zip(touched).filter(|(_, is)| **is) {
-                for (row, velocity) in rows.iter().zip(velocities) {
-                    *velocity = with_fourth(*row, 0.0);
+            let rows = self.rows.as_slice()[first..].chunks(CHUNK_SIZE);
+            let touched = self.is_touched[first / NODES_PER_CHUNK..].chunks(TESTS_PER_SHARE);
+            let velocities = body.velocities_mut().chunks_mut(CHUNK_SIZE);
+            velocities.zip(rows).zip(touched)
+        });
+        let shares = shares.filter(|(_, touched)| touched.contains(&true));
+        threads::map_items(
+            shares,
+            |((rows, _), _)| rows.len(),
+            |((velocities, rows), touched)| {
+                let rows = rows.chunks(NODES_PER_CHUNK);
+                let chunks = velocities
+                    .chunks_mut(NODES_PER_CHUNK)
+                    .zip(rows)
+                    .zip(touched);
+                for ((velocities, rows), _) in chunks.filter(|(_, is)| **is) {
+                    for (velocity, row) in velocities.iter_mut().zip(rows) {
+                        *velocity = with_fourth(*row, 0.0);
+                    }
                 }
-            }
-        }
+            },
+        );
         self.scaled.store(bodies);
     }
 

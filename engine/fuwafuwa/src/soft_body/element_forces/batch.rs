@@ -10,7 +10,11 @@ use crate::math::lanes::{Eight, LANES, on_widest_lanes};
 use crate::math::row::Row;
 use crate::soft_body::element_law::Law;
 use fearless_simd::Simd;
+use std::cell::RefCell;
 use std::ops::Range;
+
+/// Number of batches in a [`Share`].
+pub const BATCHES_PER_SHARE: usize = 8 * GROUP;
 
 /// Number of batches that pass together through the loops for gradients, stresses and forces. The scratch
 /// memory of these batches, 28 KB, fits into an L1 cache of 32 KB.
@@ -83,9 +87,9 @@ pub struct Shared<'a> {
     pub nodes: &'a [u32],
 }
 
-/// Several batches that are evaluated together, and the forces that they write. `first` is the index of the
-/// group's first node in `ElementBatches::nodes`.
-pub struct Group<'a> {
+/// Several batches that one thread evaluates, and the forces that they write. `first` is the index of the
+/// share's first node in `ElementBatches::nodes`.
+pub struct Share<'a> {
     pub batches: &'a mut [Batch],
     pub forces: &'a mut [f32],
     pub first: usize,
@@ -105,8 +109,8 @@ impl Batch {
         self.key.asleep || self.vacant == ALL_LANES
     }
 
-    /// Returns the range of the batch's forces within the forces of its group. `first` is the index of the
-    /// group's first node in `ElementBatches::nodes`.
+    /// Returns the range of the batch's forces within the forces of its share. `first` is the index of the
+    /// share's first node in `ElementBatches::nodes`.
     #[inline(always)]
     fn forces<D: Dim>(&self, first: usize) -> Range<usize> {
         (self.first_node as usize - first) * D::N..(self.end() - first) * D::N
@@ -125,8 +129,8 @@ impl Batch {
         }
     }
 
-    /// Returns the data of the batch for the kernel. `forces` holds the forces of the whole group; `first` is
-    /// the index of the group's first node in `ElementBatches::nodes`.
+    /// Returns the data of the batch for the kernel. `forces` holds the forces of the whole share; `first` is
+    /// the index of the share's first node in `ElementBatches::nodes`.
     #[inline(always)]
     fn view<'a, D: Dim>(
         &'a mut self,
@@ -146,76 +150,92 @@ impl Batch {
     }
 }
 
-/// Evaluates the forces of the awake batches of a group. `positions[number - 1]` are the node positions [m]
+/// Evaluates the forces of the awake batches of a share. `positions[number - 1]` are the node positions [m]
 /// for the elements of material `number`.
 #[inline(always)]
-pub fn evaluate_group<D: Dim, S: Simd>(
+pub fn evaluate_share<D: Dim, S: Simd>(
     simd: S,
-    group: Group,
+    share: Share,
     positions: &[&[Row]],
     scratch: &mut [Scratch; GROUP],
 ) {
-    let Group {
+    let Share {
         batches,
         forces: all,
         first,
         shared,
-    } = group;
+    } = share;
     let law = shared.law;
-    for (batch, scratch) in batches.iter_mut().zip(&mut *scratch) {
-        if batch.is_idle() {
-            continue;
+    for batches in batches.chunks_mut(GROUP) {
+        for (batch, scratch) in batches.iter_mut().zip(&mut *scratch) {
+            if batch.is_idle() {
+                continue;
+            }
+            let (key, class_data) = (batch.key, batch.class_data(&shared));
+            let position = positions[key.material as usize - 1];
+            let view = batch.view::<D>(&shared, all, first);
+            match (key.kind, class_data) {
+                (BatchKind::Plain, _) => plain_gradient::<D, S>(simd, position, &view, scratch),
+                (_, (one, [])) => gradient::<D, S>(simd, &Uniform(one), position, &view, scratch),
+                (_, (_, each)) => gradient::<D, S>(simd, &PerLane(each), position, &view, scratch),
+            }
         }
-        let (key, class_data) = (batch.key, batch.class_data(&shared));
-        let position = positions[key.material as usize - 1];
-        let view = batch.view::<D>(&shared, all, first);
-        match (key.kind, class_data) {
-            (BatchKind::Plain, _) => plain_gradient::<D, S>(simd, position, &view, scratch),
-            (_, (one, [])) => gradient::<D, S>(simd, &Uniform(one), position, &view, scratch),
-            (_, (_, each)) => gradient::<D, S>(simd, &PerLane(each), position, &view, scratch),
-        }
-    }
-    for (batch, scratch) in batches.iter_mut().zip(&mut *scratch) {
-        if batch.is_idle() {
-            continue;
-        }
-        let material = batch.key.material as usize - 1;
-        let moduli = &shared.moduli[material];
-        let Some(Some(flow)) = shared.flows.get(material) else {
+        for (batch, scratch) in batches.iter_mut().zip(&mut *scratch) {
+            if batch.is_idle() {
+                continue;
+            }
+            let material = batch.key.material as usize - 1;
+            let moduli = &shared.moduli[material];
+            let Some(Some(flow)) = shared.flows.get(material) else {
+                let mut view = batch.view::<D>(&shared, all, first);
+                stress::<D, S>(simd, law, moduli, &mut view, scratch);
+                continue;
+            };
+            let mut plastic_inverse = batch.plastic_inverse.take();
             let mut view = batch.view::<D>(&shared, all, first);
-            stress::<D, S>(simd, law, moduli, &mut view, scratch);
-            continue;
-        };
-        let mut plastic_inverse = batch.plastic_inverse.take();
-        let mut view = batch.view::<D>(&shared, all, first);
-        match &mut plastic_inverse {
-            Some(plastic_inverse) => {
-                plastic_stress::<D, S>(simd, (moduli, flow), &mut view, plastic_inverse, scratch);
+            match &mut plastic_inverse {
+                Some(plastic_inverse) => {
+                    plastic_stress::<D, S>(
+                        simd,
+                        (moduli, flow),
+                        &mut view,
+                        plastic_inverse,
+                        scratch,
+                    );
+                }
+                None => stress::<D, S>(simd, law, moduli, &mut view, scratch),
             }
-            None => stress::<D, S>(simd, law, moduli, &mut view, scratch),
+            batch.plastic_inverse = plastic_inverse;
         }
-        batch.plastic_inverse = plastic_inverse;
-    }
-    for (batch, scratch) in batches.iter_mut().zip(&*scratch) {
-        if batch.is_idle() {
-            continue;
-        }
-        let (key, class_data) = (batch.key, batch.class_data(&shared));
-        let moduli = &shared.moduli[key.material as usize - 1];
-        let view = &mut batch.view::<D>(&shared, all, first);
-        match (key.kind, class_data) {
-            (BatchKind::Plain, _) => plain_forces::<D, S>(simd, moduli, view, scratch),
-            (_, (one, [])) => {
-                forces::<D, S>(simd, law, moduli, &Uniform(one), view, scratch);
+        for (batch, scratch) in batches.iter_mut().zip(&*scratch) {
+            if batch.is_idle() {
+                continue;
             }
-            (_, (_, each)) => {
-                forces::<D, S>(simd, law, moduli, &PerLane(each), view, scratch);
+            let (key, class_data) = (batch.key, batch.class_data(&shared));
+            let moduli = &shared.moduli[key.material as usize - 1];
+            let view = &mut batch.view::<D>(&shared, all, first);
+            match (key.kind, class_data) {
+                (BatchKind::Plain, _) => plain_forces::<D, S>(simd, moduli, view, scratch),
+                (_, (one, [])) => {
+                    forces::<D, S>(simd, law, moduli, &Uniform(one), view, scratch);
+                }
+                (_, (_, each)) => {
+                    forces::<D, S>(simd, law, moduli, &PerLane(each), view, scratch);
+                }
             }
         }
     }
 }
 
-/// Evaluates the forces of a group with the widest SIMD lanes of the machine.
-pub fn evaluate_best<D: Dim>(group: Group, positions: &[&[Row]], scratch: &mut [Scratch; GROUP]) {
-    on_widest_lanes!(simd => evaluate_group::<D, _>(simd, group, positions, scratch));
+thread_local! {
+    /// Scratch memory of the kernel.
+    static SCRATCH: RefCell<Box<[Scratch; GROUP]>> =
+        RefCell::new(Box::new([Scratch::EMPTY; GROUP]));
+}
+
+/// Evaluates the forces of the awake batches of a share on the widest lanes of this machine.
+pub fn evaluate_best<D: Dim>(share: Share, positions: &[&[Row]]) {
+    SCRATCH.with_borrow_mut(|scratch| {
+        on_widest_lanes!(simd => evaluate_share::<D, _>(simd, share, positions, scratch));
+    });
 }

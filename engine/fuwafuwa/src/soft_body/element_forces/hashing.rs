@@ -26,7 +26,6 @@ impl<D: Dim> HashState for ElementBatches<D> {
             pooled_class_data: _,
             slots: _,
             nodes: _,
-            scratch: _,
             #[cfg(feature = "serde")]
                 saved: _,
             dim: _,
