@@ -158,17 +158,19 @@ impl Drawn {
         let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
         let texture = new_texture(device, "image", size, 1, format, usage);
         let view = texture.create_view(&TextureViewDescriptor::default());
+        let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
+        draw(ImageStage::Prepare(&mut encoder));
+        let mut pass = pass_into(&mut encoder, &view);
+        draw(ImageStage::Paint(&mut pass));
+        drop(pass);
+        // Created after `draw`, which may submit: WebGL counts the creation as a write, and Chromium warns of
+        // buffers that are written before and after a submission.
         let buffer = device.create_buffer(&BufferDescriptor {
             label: Some("image"),
             size: length,
             usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        let mut encoder = device.create_command_encoder(&CommandEncoderDescriptor::default());
-        draw(ImageStage::Prepare(&mut encoder));
-        let mut pass = pass_into(&mut encoder, &view);
-        draw(ImageStage::Paint(&mut pass));
-        drop(pass);
         let into = TexelCopyBufferInfo {
             buffer: &buffer,
             layout: TexelCopyBufferLayout {
