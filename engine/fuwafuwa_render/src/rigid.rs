@@ -3,7 +3,7 @@
 use crate::frame::{Basket, Particle};
 use crate::palette::{Colour, Palette};
 use bytemuck::{Pod, Zeroable};
-use fuwafuwa::{Dim, Dim2, RigidBodyRef, Shape, World};
+use fuwafuwa::{Dim, Dim2, Layers, RigidBodyRef, Shape, World};
 use glam::Vec2;
 
 /// Maximum number of half-spaces drawn, limited by the size of uniform buffers on small devices.
@@ -21,7 +21,7 @@ pub struct RigidInstance {
     pub radius: f32,
     /// 0 = capsule, 1 = box, 2 = ball.
     pub form: f32,
-    /// Player number of a hand, or fill level of a basket.
+    /// Player number of a hand, or fill level of a basket. Of a bar: 1 if it is glass, otherwise 0.
     pub number: f32,
     /// Red, green, blue.
     pub colour: Colour,
@@ -71,7 +71,11 @@ impl RigidShapes {
             if let Shape::HalfSpace { normal, offset } = shape {
                 self.walls.push([normal.x, normal.y, offset, 0.0]);
             }
-            self.shapes.extend(instance(shape, palette.bar, 0.0));
+            let (colour, glass) = match is_glass(obstacle) {
+                true => (palette.glass, 1.0),
+                false => (palette.bar, 0.0),
+            };
+            self.shapes.extend(instance(shape, colour, glass));
         }
         self.walls.truncate(MAX_WALLS);
         self.bar_count = self.shapes.len() as u32;
@@ -97,6 +101,12 @@ impl RigidShapes {
 pub fn obstacles<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<'_, D>> {
     let bodies = world.rigid_bodies().map(|(_, body)| body);
     bodies.filter(|body| !body.follows_target() && !body.is_sensor())
+}
+
+/// Returns whether a rigid body is drawn as glass, because it lets bodies with the default layers through. For
+/// example a fence that stops only hands.
+pub fn is_glass<D: Dim>(body: RigidBodyRef<'_, D>) -> bool {
+    !body.layers().meet(Layers::default())
 }
 
 /// Returns the kinematic and coupled rigid bodies of a world, by player.
@@ -140,12 +150,17 @@ mod tests {
         let floor = Shape::half_space(Vec2::Y, Vec2::new(0.0, -2.0));
         let bar = Shape::capsule(Vec2::ZERO, Vec2::X, 0.1);
         let hand = RigidBody::coupled(Shape::ball(0.2));
+        let fence = Layers {
+            memberships: 1,
+            filters: 2,
+        };
         let fallen = RigidBody::dynamic(Shape::cuboid(Vec2::new(0.3, 0.2)), 1.0);
         for body in [
             RigidBody::fixed(floor),
             RigidBody::fixed(bar),
             hand.at(Vec2::new(0.0, 3.0)),
             hand.at(Vec2::new(1.0, 3.0)),
+            RigidBody::fixed(bar).with_layers(fence),
             fallen.rotated(Rotation::in_plane(0.5)),
         ] {
             world.add_rigid_body(body).unwrap();
@@ -164,10 +179,12 @@ mod tests {
         assert_eq!(rigid.walls, [[0.0, 1.0, -2.0, 0.0]]);
         assert_eq!(
             (rigid.bar_count, rigid.hand_count, rigid.shapes.len()),
-            (2, 2, 5)
+            (3, 2, 6)
         );
-        assert!((rigid.shapes[1].radius - 0.5).abs() < 1e-5);
-        assert_ne!(rigid.shapes[2].colour, rigid.shapes[3].colour);
-        assert_eq!((rigid.shapes[4].number, rigid.dots.len()), (0.5, 1));
+        let glass: Vec<f32> = rigid.shapes[..3].iter().map(|bar| bar.number).collect();
+        assert_eq!(glass, [0.0, 1.0, 0.0]);
+        assert!((rigid.shapes[2].radius - 0.5).abs() < 1e-5);
+        assert_ne!(rigid.shapes[3].colour, rigid.shapes[4].colour);
+        assert_eq!((rigid.shapes[5].number, rigid.dots.len()), (0.5, 1));
     }
 }

@@ -41,6 +41,7 @@
 //!
 //! [[hand]]                        # rigid body that follows a path
 //! radius = 0.1                    # [m]; or a box or a capsule
+//! layers = { memberships = 2 }    # obstacles and hands have layers, too; a fence stops hands only
 //! path = [[0.0, -0.3, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]   # time [s], then position [m]
 //!
 //! [[rigid_body]]                  # any rigid body; its shape is given as if it stood at the origin
@@ -67,6 +68,8 @@
 //! name = { en = "Over the wall", ja = "かべのむこう" }
 //! basket = { centre = [1.2, 0.3, 0.0], half = [0.4, 0.4, 0.0] }   # [m]
 //! share = 0.6                     # share of the mass that must rest in the basket
+//! alone = true                    # the basket counts only while no hand touches a piece in it
+//! bodies = [1]                    # bodies that count, by number; by default all
 //! ```
 //!
 //! Vectors have three components in both dimensions; in 2D the third is 0. Files of version 0.2 remain readable:
@@ -94,11 +97,11 @@ mod write;
 pub use body::{BodyText, Form, LayersText, MaterialText, PartText, VoxelsText, extension_of};
 pub use embed::Fetch;
 pub use error::{SceneError, shortened};
-pub use game::{AssistText, GameText, LocalizedText, RouteText, WishText};
+pub use game::{AssistText, GameText, JointsText, LocalizedText, RouteText, WishText};
 pub use joint::{JointAnchorText, JointKindText, JointText};
 pub use rigid_body::{MotionTypeText, RigidBodyText};
 pub(crate) use shapes::set_hand_targets;
-pub use shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText};
+pub use shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText, point_at};
 
 use crate::import::ImportNote;
 use budget::Budget;
@@ -360,7 +363,8 @@ impl Scene {
         let Some(game) = &self.game else {
             return Ok(None);
         };
-        let basket = game.check::<D>().and_then(|()| game.basket::<D>());
+        let checked = game.check::<D>(self.body.len(), self.joint.len());
+        let basket = checked.and_then(|()| game.basket::<D>());
         basket.map_err(|wrong| self.origin.error(wrong.under("game")))
     }
 

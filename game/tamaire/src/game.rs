@@ -35,9 +35,10 @@ pub use notices::{Notice, Notices};
 pub use public::{EndedRound, PublicMode};
 pub use screen::{Screen, Screens};
 pub use shelf::{RoundDetails, SavedRound, SavedRounds};
+use std::collections::BTreeSet;
 use std::sync::Arc;
-use tamaire_play::level::{NAMED, NAMED_3D};
-use tamaire_play::{Level, Playback, Replay, ReplayError};
+use tamaire_play::level::built_in;
+use tamaire_play::{Assist, Level, Playback, Replay, ReplayError};
 use tamaire_sound::{Cue, Menu};
 use trial::Trial;
 pub use watching::SPEEDS;
@@ -97,13 +98,8 @@ impl Game {
     pub fn new(mut files: Files, sound: Sound, pads: Pads) -> Self {
         let (settings, settings_damage) = files.settings();
         let (records, records_damage) = files.records();
-        let open = |(id, _): &(&str, &str)| Level::open(id);
-        let levels = NAMED
-            .iter()
-            .chain(&NAMED_3D)
-            .map(open)
-            .map(|level| Arc::new(level.expect("built-in level opens")));
-        let levels: Vec<Arc<Level>> = levels.collect();
+        let open = |(id, _)| Arc::new(Level::open(id).expect("built-in level opens"));
+        let levels: Vec<Arc<Level>> = built_in().map(open).collect();
         let mut game = Self {
             screens: Screens::default(),
             records: records.by_name(levels.iter().map(Arc::as_ref)),
@@ -245,16 +241,23 @@ impl Game {
 
     /// Returns the level with the chosen assists applied.
     fn eased(&mut self, level: &Arc<Level>) -> Arc<Level> {
-        let assists = &self.settings.assists;
+        let ignored = &level.game().ignored_assists;
+        let chosen = &self.settings.assists;
+        let assists: BTreeSet<Assist> = chosen.difference(ignored).copied().collect();
+        let said = self.words();
+        for &assist in chosen.intersection(ignored) {
+            self.notices
+                .tell(&(said.assist_ignored)((said.assist)(assist)));
+        }
         if assists.is_empty() {
             return level.clone();
         }
         let current = self.bout.round().level();
-        if current.game().assists == *assists && current.is_version_of(level) {
+        if current.game().assists == assists && current.is_version_of(level) {
             // Reuses the level of the current round, because building a level takes long.
             return current.clone();
         }
-        match level.assisted(assists) {
+        match level.assisted(&assists) {
             Ok(eased) => Arc::new(eased),
             Err(error) => {
                 self.notify((self.words().level_error)(&error));
@@ -417,7 +420,7 @@ impl Game {
 
     /// Whether the level with index `index` in [`Self::levels`] is not built in.
     pub fn is_own(&self, index: usize) -> bool {
-        index >= NAMED.len() + NAMED_3D.len()
+        index >= built_in().count()
     }
 
     /// Performs an action requested by a key or button.

@@ -16,7 +16,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use tamaire_play::level::{LevelError, NAMED, NAMED_3D};
+use tamaire_play::level::{LevelError, NAMED, built_in};
 use tamaire_play::link::{LinkError, is_link};
 use tamaire_play::{Bot, BotKind, Level, Link, Replay, ReplayError};
 
@@ -190,11 +190,11 @@ pub fn is_link_argument(argument: &Path) -> bool {
 /// Prints the id of each level and its names in English and Japanese. Returns the exit status of the program.
 pub fn list() -> ExitCode {
     let mut text = String::new();
-    for (id, _) in NAMED.iter().chain(&NAMED_3D) {
+    for (id, _) in built_in() {
         let level = Level::open(id).expect("built-in level opens");
         let name = &level.game().name;
         let other = name.ja.as_deref().unwrap_or_default();
-        text += &format!("{id:12}  {:20}  {other}\n", name.en);
+        text += &format!("{id:16}  {:20}  {other}\n", name.en);
     }
     print(&text)
 }

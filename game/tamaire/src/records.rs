@@ -3,7 +3,7 @@
 use crate::sift::sift;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use tamaire_play::{Level, Outcome, Route, Wish};
+use tamaire_play::{Joints, Level, Outcome, Route, Wish};
 
 /// Results in all levels, by level id.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -57,6 +57,11 @@ impl WishName {
             wish.seconds.map(|most| format!("within {most} s")),
             wish.kept.map(|least| format!("keep {least}")),
             wish.pieces.map(|least| format!("{least} pieces")),
+            wish.max_pieces.map(|most| format!("at most {most} pieces")),
+            wish.joints.map(|joints| match joints {
+                Joints::Whole => "joints whole".into(),
+                Joints::Broken => "joints broken".into(),
+            }),
         ];
         Self(parts.into_iter().flatten().collect::<Vec<_>>().join(", "))
     }
@@ -161,6 +166,7 @@ mod tests {
             inside: 0.9,
             pieces: 1,
             lost: 0,
+            broken: 0,
         }
     }
 
@@ -194,8 +200,8 @@ mod tests {
         let wish = Wish {
             seconds: Some(20.0),
             kept: Some(0.9),
-            pieces: None,
             route: Some(Route::Squeeze),
+            ..Wish::default()
         };
         assert_eq!(WishName::of(&wish).0, "squeeze, within 20 s, keep 0.9");
         let (old, refused) = Records::read("[classic]\nwishes = [0, 2, 77]\n");

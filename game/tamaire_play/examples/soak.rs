@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::thread;
 use std::time::Instant;
-use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::level::{NAMED, NAMED_3D, PATH};
 use tamaire_play::{Bot, BotKind, Level, Round};
 
 /// Default and maximum number of minutes per level.
@@ -93,7 +93,9 @@ fn parse(words: &[String]) -> Result<(usize, Vec<Level>), String> {
             .ok_or_else(|| format!("expected 1 to {MOST_MINUTES} minutes first, found {word:?}"))?,
     };
     // Puts 3D levels first, because they take longest.
-    let all = NAMED_3D.iter().chain(&NAMED).map(|(id, _)| id.to_string());
+    let path = PATH.iter().map(|level| level.id);
+    let all = NAMED_3D.iter().chain(&NAMED).map(|(id, _)| *id);
+    let all = all.chain(path).map(String::from);
     let named = words.iter().skip(1).cloned();
     let ids: Vec<String> = match words.len() {
         0 | 1 => all.collect(),

@@ -14,7 +14,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
-use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::level::built_in;
 use tamaire_play::{Bot, BotKind, Level, Round};
 
 const TICKS_A_SECOND: usize = 60;
@@ -99,11 +99,11 @@ fn is_closed(error: &(dyn Error + 'static)) -> bool {
 }
 
 fn measure(options: &Options) -> Result<(), Box<dyn Error>> {
-    let named = NAMED.iter().chain(&NAMED_3D).map(|(id, _)| *id);
+    let named: Vec<&str> = built_in().map(|(id, _)| id).collect();
     let mut levels = Vec::new();
     for id in &options.levels {
         match id.as_str() {
-            "all" => levels.extend(named.clone()),
+            "all" => levels.extend(&named),
             id => levels.push(id),
         }
     }

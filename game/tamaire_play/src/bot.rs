@@ -3,6 +3,9 @@
 
 mod map;
 mod sight;
+mod straight;
+
+pub use straight::StraightPush;
 
 use crate::{AnyRound, InputFrame, Outcome, Round};
 use fuwafuwa::{DEFAULT_TICK, Dim, Vec3};

@@ -1,7 +1,10 @@
 //! Levels. A level is a text file with a scene and a table `[game]`.
 
 mod frame;
+mod path;
 mod room;
+
+pub use path::{PATH, PathLevel};
 
 use crate::Route;
 use frame::BodySize;
@@ -124,16 +127,20 @@ const FILES: [(&str, &[u8]); 2] = [
     ("pudding.vox", include_bytes!("../levels/pudding.vox")),
 ];
 
+/// Returns name and text of every built-in level, in menu order: 2D levels, 3D levels, levels of the path.
+pub fn built_in() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let path = PATH.iter().map(|level| (level.id, level.text));
+    NAMED.into_iter().chain(NAMED_3D).chain(path)
+}
+
 impl Level {
     /// Opens a built-in level.
     ///
     /// # Errors
     /// [`LevelError::Unknown`] if there is no built-in level of this name.
     pub fn open(id: &str) -> Result<Self, LevelError> {
-        let mut named = NAMED.iter().chain(&NAMED_3D);
-        let Some((_, text)) = named.find(|(known, _)| *known == id) else {
-            let named = NAMED.iter().chain(&NAMED_3D);
-            let known: Vec<&str> = named.map(|(known, _)| *known).collect();
+        let Some((_, text)) = built_in().find(|(known, _)| *known == id) else {
+            let known: Vec<&str> = built_in().map(|(known, _)| known).collect();
             let (id, known) = (id.into(), known.join(", "));
             return Err(LevelError::Unknown { id, known });
         };
@@ -329,7 +336,7 @@ impl Level {
     /// Returns whether a body was made from a picture that is not part of the game.
     pub fn is_drawing(&self, body: usize) -> bool {
         let is_file = |body: &BodyText| body.file.is_some();
-        let is_built_in = NAMED.iter().any(|(id, _)| *id == self.id);
+        let is_built_in = built_in().any(|(id, _)| id == self.id);
         self.scene.dim == 2 && !is_built_in && self.scene.body.get(body).is_some_and(is_file)
     }
 
@@ -488,7 +495,7 @@ mod tests {
 
     #[test]
     fn every_built_in_level_opens() {
-        for (id, _) in NAMED.iter().chain(&NAMED_3D) {
+        for (id, _) in built_in() {
             let level = Level::open(id);
             let scene = level.map(|level| level.scene);
             let checked = scene.and_then(|scene| Level::from_scene(id, scene));
@@ -519,7 +526,7 @@ mod tests {
         ] {
             assert_eq!(routes(id), expected, "{id}");
         }
-        for (id, _) in NAMED.iter().chain(&NAMED_3D) {
+        for (id, _) in built_in() {
             let level = Level::open(id).unwrap();
             let mut wished = level.game().wish.iter().filter_map(|wish| wish.route);
             assert!(wished.all(|route| level.routes().contains(&route)), "{id}");

@@ -11,6 +11,7 @@
 //! - [`replay`]: recorded rounds
 //! - [`link`]: rounds and levels as links
 //! - [`bot`]: players that are programs
+//! - [`way`]: ways to win a level
 //!
 //! A window, a bot and a replay play in the same way: they pass one [`InputFrame`] per tick to
 //! [`Round::step`] and read the resulting state. A 2D round is a `Round<Dim2>`, a 3D round a `Round<Dim3>`;
@@ -49,11 +50,13 @@ pub mod link;
 pub mod replay;
 pub mod round;
 pub mod rules;
+pub mod way;
 
 pub use any::AnyRound;
 pub use bot::{Bot, BotKind};
 pub use fuwafuwa_scenes::scene::{
-    AssistText as Assist, LocalizedText, RouteText as Route, WishText as Wish, shortened,
+    AssistText as Assist, JointsText as Joints, LocalizedText, RouteText as Route,
+    WishText as Wish, shortened,
 };
 pub use input::{InputFrame, PLAYERS};
 pub use level::Level;
@@ -61,3 +64,4 @@ pub use link::{Link, LinkError};
 pub use replay::{Playback, Replay, ReplayError};
 pub use round::{Hand, Round};
 pub use rules::{Outcome, Progress, WishState};
+pub use way::{Way, Ways};

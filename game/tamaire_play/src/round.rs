@@ -3,7 +3,7 @@
 use crate::{InputFrame, Level, PLAYERS, Progress};
 use fuwafuwa::{
     DEFAULT_TICK, Dim, Dim3, DimAngular, DimVector, Reaction, RigidBody, RigidBodyHandle,
-    RigidBodyRef, Shape, StepReport, Vec3, World,
+    RigidBodyRef, Shape, SoftBody, StepReport, Vec3, World,
 };
 use fuwafuwa_scenes::Scene;
 use std::sync::Arc;
@@ -88,7 +88,7 @@ impl<D: Dim> Round<D> {
         }
         Self {
             players: hands.into_iter().take(1).collect(),
-            progress: Progress::of(&world),
+            progress: Progress::of(&level, &world),
             basket,
             world,
             starts,
@@ -118,7 +118,9 @@ impl<D: Dim> Round<D> {
         self.idle_ticks += u64::from(!self.has_begun);
         let clock = self.clock_ticks();
         let basket = self.basket.as_ref();
-        self.progress.watch(&self.level, basket, &self.world, clock);
+        let (level, world) = (&self.level, &self.world);
+        self.progress
+            .watch(level, basket, world, &self.players, clock);
         if self.frames.len() < MAX_TICKS {
             self.frames.push(frame);
             if self.frames.len().is_multiple_of(60) || self.progress.outcome.is_some() {
@@ -151,6 +153,13 @@ impl<D: Dim> Round<D> {
     /// Returns the region to be filled, if the level has one.
     pub fn basket(&self) -> Option<&Shape<D>> {
         self.basket.as_ref()
+    }
+
+    /// Returns the bodies that count; see [`GameText::bodies`](fuwafuwa_scenes::scene::GameText::bodies).
+    pub fn counted_bodies(&self) -> impl Iterator<Item = &SoftBody<D>> {
+        let bodies = self.world.soft_bodies().map(|(_, body)| body);
+        let counts = bodies.zip(&self.progress.counts);
+        counts.filter_map(|(body, counts)| counts.then_some(body))
     }
 
     /// Returns the distance from a position to the nearest node of a soft body [m]. `f32::INFINITY` without
@@ -283,6 +292,7 @@ mod tests {
             inside: 1.0,
             pieces: 1,
             lost: 0,
+            broken: 0,
         });
         assert_eq!(Replay::of(&round).outcome, None);
     }

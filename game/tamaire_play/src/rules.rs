@@ -1,8 +1,12 @@
 //! Conditions and routes of a win.
 
-use crate::{Level, Route, Wish};
+use crate::{Joints, Level, Route, Wish};
 use fuwafuwa::inspect::Row;
-use fuwafuwa::{DEFAULT_TICK, Dim, DimVector, ElementId, PieceView, Shape, SoftBody, World};
+use fuwafuwa::{
+    DEFAULT_TICK, Dim, DimVector, ElementId, ObjectRef, PieceView, RigidBodyHandle, Shape,
+    SoftBody, SoftBodyHandle, World,
+};
+use fuwafuwa_scenes::scene::GameText;
 use serde::{Deserialize, Serialize};
 
 /// Speed below which a node counts as resting in the basket [m/s].
@@ -18,10 +22,10 @@ const SQUEEZED: f32 = 0.08;
 /// body in lasts longer than the interval.
 const LOOK: u64 = 4;
 
-/// Progress of a round.
+/// Progress of a round. All values are about the bodies that count; see [`GameText::bodies`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// Total mass of all bodies at the start [kg].
+    /// Total mass of the bodies at the start [kg].
     pub mass: f32,
     /// Share of the mass at rest in the basket.
     pub inside: f32,
@@ -32,15 +36,23 @@ pub struct Progress {
     pub kept: f32,
     /// Number of pieces.
     pub pieces: usize,
-    /// Time for which enough mass has rested in the basket [s].
+    /// Time for which enough mass has rested in the basket, and no hand has touched it if the level demands
+    /// that [s].
     pub held: f32,
+    /// Whether a hand touches a piece in the basket.
+    pub touched: bool,
+    /// Number of joints that broke.
+    pub broken: usize,
     /// Whether the bars stopped squeezing the content of the basket at some moment of the current hold, the
     /// time for which enough mass has rested there. If never, a win with a torn body counts as
     /// [`Route::Mix`].
     pub relaxed: bool,
     /// Outcome of the round; `None` before a win.
     pub outcome: Option<Outcome>,
-    bodies: usize,
+    /// For each body, whether it counts.
+    pub(crate) counts: Vec<bool>,
+    /// Number of joints at the start.
+    joints: usize,
     /// Mean strain above which the bars count as squeezing a body at rest, own weight included.
     squeezed: f32,
     /// Sum of the masses of each body's largest piece at the start [kg].
@@ -64,6 +76,13 @@ pub struct Outcome {
     pub pieces: usize,
     /// Number of pieces with their centre outside the basket. Crumbs do not count.
     pub lost: usize,
+    /// Number of joints that broke.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub broken: usize,
+}
+
+fn is_zero(number: &usize) -> bool {
+    *number == 0
 }
 
 impl Outcome {
@@ -83,6 +102,10 @@ impl Outcome {
             seconds: wish.seconds.filter(|most| self.seconds() > *most),
             kept: wish.kept.filter(|least| self.kept < *least),
             pieces: wish.pieces.filter(|least| self.pieces < *least),
+            max_pieces: wish.max_pieces.filter(|most| self.pieces > *most),
+            joints: wish
+                .joints
+                .filter(|joints| *joints != joints_of(self.broken)),
             route: wish.route.filter(|route| self.route != *route),
         }
     }
@@ -100,6 +123,11 @@ pub enum WishState {
 }
 
 impl Progress {
+    /// Returns whether enough mass rests in the basket, but the rules demand that the hand lets go of it.
+    pub fn waits_for_hand(&self, rules: &GameText) -> bool {
+        rules.alone && self.touched && self.inside >= rules.share
+    }
+
     /// Returns the state of a wish of the level, `seconds` [s] after the first push.
     pub fn state_of(&self, wish: &Wish, seconds: f32) -> WishState {
         if let Some(outcome) = &self.outcome {
@@ -110,53 +138,78 @@ impl Progress {
         }
         let is_late = wish.seconds.is_some_and(|most| seconds > most);
         let is_torn = wish.kept.is_some_and(|least| self.kept < least)
-            || wish.route == Some(Route::Squeeze) && self.kept < WHOLE;
-        // Only the number of pieces is certain before the win: time passes, and bodies may still tear.
-        let is_certain = wish.seconds.is_none() && wish.kept.is_none() && wish.route.is_none();
-        let has_pieces = wish.pieces.is_some_and(|least| self.pieces >= least);
+            || wish.route == Some(Route::Squeeze) && self.kept < WHOLE
+            || wish.max_pieces.is_some_and(|most| self.pieces > most);
+        let is_broken = wish.joints == Some(Joints::Whole) && self.broken > 0;
+        // Before the win, only a minimum number of pieces and broken joints are certain: time passes, and bodies
+        // and joints may still break.
+        let certain = Wish {
+            pieces: wish.pieces.filter(|least| self.pieces >= *least),
+            joints: wish.joints.filter(|_| self.broken > 0),
+            ..Wish::default()
+        };
         match () {
-            () if is_late || is_torn => WishState::Missed,
-            () if is_certain && has_pieces => WishState::Done,
+            () if is_late || is_torn || is_broken => WishState::Missed,
+            () if certain == *wish => WishState::Done,
             () => WishState::Open,
         }
     }
 
-    pub(crate) fn of<D: Dim>(world: &World<D>) -> Self {
-        let views = views_of(world);
+    pub(crate) fn of<D: Dim>(level: &Level, world: &World<D>) -> Self {
+        let chosen = &level.game().bodies;
+        let counts = |body: usize| chosen.is_empty() || chosen.contains(&(body + 1));
+        let counts: Vec<bool> = (0..world.soft_bodies().count()).map(counts).collect();
+        let bodies = counted(world, &counts);
+        let views = views_of(&bodies);
         Self {
-            mass: total_mass(world),
+            mass: bodies
+                .iter()
+                .map(|(_, body)| body.total_mass() as f32)
+                .sum(),
             inside: 0.0,
             within: 0.0,
             kept: 1.0,
             pieces: views.iter().map(Vec::len).sum(),
             held: 0.0,
+            touched: false,
+            broken: 0,
             relaxed: false,
             outcome: None,
-            bodies: views.len(),
-            squeezed: SQUEEZED + own_strain(world, &views),
+            joints: world.joints().count(),
+            squeezed: SQUEEZED + own_strain(world, &bodies, &views),
             whole: greatest(&views),
+            counts,
         }
     }
 
-    /// Updates the progress after a tick. `clock` is the number of ticks since the first input that moved a
-    /// hand.
+    /// Updates the progress after a tick. `hands` are the hands of the players that have joined, and `clock` is the
+    /// number of ticks since the first input that moved a hand.
     pub(crate) fn watch<D: Dim>(
         &mut self,
         level: &Level,
         basket: Option<&Shape<D>>,
         world: &World<D>,
+        hands: &[RigidBodyHandle],
         clock: u64,
     ) {
-        let views = views_of(world);
+        let bodies = counted(world, &self.counts);
+        let views = views_of(&bodies);
         self.kept = greatest(&views) / self.whole;
         self.pieces = views.iter().map(Vec::len).sum();
+        self.broken = self.joints.saturating_sub(world.joints().count());
         let Some(basket) = basket else {
             return;
         };
-        let (resting, all) = masses_inside(world, basket);
+        let Content {
+            resting,
+            all,
+            touched,
+        } = content(&bodies, basket, &pieces_at(world, hands));
         self.inside = resting / self.mass;
         self.within = all / self.mass;
-        let enough = self.inside >= level.game().share;
+        self.touched = touched;
+        let rules = level.game();
+        let enough = self.inside >= rules.share && !self.waits_for_hand(rules);
         self.held = if enough {
             self.held + DEFAULT_TICK
         } else {
@@ -165,7 +218,7 @@ impl Progress {
         self.relaxed &= enough;
         let looks = self.held == DEFAULT_TICK || world.ticks().is_multiple_of(LOOK);
         if enough && looks && !self.relaxed {
-            self.relaxed = strain_inside(world, &views, basket) <= self.squeezed;
+            self.relaxed = strain_inside(&bodies, &views, basket) <= self.squeezed;
         }
         if enough && self.held >= level.game().hold {
             let all = views.iter().flatten();
@@ -180,6 +233,7 @@ impl Progress {
                 inside: self.inside,
                 pieces: self.pieces,
                 lost,
+                broken: self.broken,
             });
         }
     }
@@ -196,9 +250,36 @@ impl Progress {
     }
 }
 
-fn views_of<D: Dim>(world: &World<D>) -> Vec<Vec<PieceView>> {
-    let bodies = world.soft_bodies();
-    bodies.map(|(_, body)| body.piece_views()).collect()
+/// Returns the state of the joints after `broken` of them broke.
+fn joints_of(broken: usize) -> Joints {
+    match broken {
+        0 => Joints::Whole,
+        _ => Joints::Broken,
+    }
+}
+
+/// A body and its handle.
+type Counted<'a, D> = (SoftBodyHandle, &'a SoftBody<D>);
+
+/// Returns the bodies that count.
+fn counted<'a, D: Dim>(world: &'a World<D>, counts: &[bool]) -> Vec<Counted<'a, D>> {
+    let bodies = world.soft_bodies().zip(counts);
+    bodies
+        .filter_map(|(body, counts)| counts.then_some(body))
+        .collect()
+}
+
+fn views_of<D: Dim>(bodies: &[Counted<'_, D>]) -> Vec<Vec<PieceView>> {
+    bodies.iter().map(|(_, body)| body.piece_views()).collect()
+}
+
+/// Returns the pieces that touch one of the hands.
+fn pieces_at<D: Dim>(world: &World<D>, hands: &[RigidBodyHandle]) -> Vec<ObjectRef> {
+    let contacts = hands.iter().filter_map(|&hand| {
+        let contacts = world.contacts_of(hand).ok()?;
+        Some(contacts.filter_map(move |contact| contact.other(hand)))
+    });
+    contacts.flatten().collect()
 }
 
 /// Returns the sum of the masses of each body's largest piece [kg].
@@ -212,7 +293,11 @@ fn greatest(views: &[Vec<PieceView>]) -> f32 {
 /// Returns an estimate of the largest mean strain of a body under its own weight. The estimate assumes a
 /// column as high as the body. The column has the material of the body with the largest ratio of density to
 /// stiffness. The stress is ρ g h at the foot of the column and zero at the top.
-fn own_strain<D: Dim>(world: &World<D>, views: &[Vec<PieceView>]) -> f32 {
+fn own_strain<D: Dim>(
+    world: &World<D>,
+    bodies: &[Counted<'_, D>],
+    views: &[Vec<PieceView>],
+) -> f32 {
     let gravity = world.config().gravity.to_vec3();
     let of = |body: &SoftBody<D>, pieces: &[PieceView]| {
         let materials = body.materials().iter();
@@ -224,40 +309,60 @@ fn own_strain<D: Dim>(world: &World<D>, views: &[Vec<PieceView>]) -> f32 {
         let softer = body.stiffness_scale() as f32;
         0.5 * heavy.fold(0.0, f32::max) * drops.fold(0.0, f32::max) / softer
     };
-    let strains = { world.soft_bodies().zip(views) }.map(|((_, body), pieces)| of(body, pieces));
+    let strains = bodies.iter().zip(views);
+    let strains = strains.map(|((_, body), pieces)| of(body, pieces));
     strains.fold(0.0, f32::max)
 }
 
-fn total_mass<D: Dim>(world: &World<D>) -> f32 {
-    let bodies = world.soft_bodies();
-    bodies.map(|(_, body)| body.total_mass() as f32).sum()
+/// Content of the basket.
+#[derive(Default)]
+struct Content {
+    /// Mass of the nodes at rest in the basket [kg].
+    resting: f32,
+    /// Mass of all nodes in the basket [kg].
+    all: f32,
+    /// Whether a piece with nodes in the basket is touched by a hand.
+    touched: bool,
 }
 
-/// Returns the mass of the nodes at rest in a region, and the mass of all nodes in the region [kg].
-fn masses_inside<D: Dim>(world: &World<D>, region: &Shape<D>) -> (f32, f32) {
-    let inside = |body: &SoftBody<D>| {
-        let (mut resting, mut all) = (0.0, 0.0);
+/// Returns the content of a region. `touched` are the pieces that a hand touches.
+fn content<D: Dim>(bodies: &[Counted<'_, D>], region: &Shape<D>, touched: &[ObjectRef]) -> Content {
+    let mut sum = Content::default();
+    for &(handle, body) in bodies {
+        let mut own = Content::default();
         for (id, _) in body.mesh().nodes() {
             if !is_inside(region, body.positions()[id]) {
                 continue;
             }
             let (_, velocity, mass) = body.node_state(id);
-            all += mass;
+            own.all += mass;
             if velocity.dot(velocity) < RESTING * RESTING {
-                resting += mass;
+                own.resting += mass;
+            }
+            if !touched.is_empty() && !sum.touched {
+                let piece = body.pieces().of_node(id);
+                let piece = ObjectRef::Piece {
+                    body: handle,
+                    piece,
+                };
+                sum.touched = touched.contains(&piece);
             }
         }
-        (resting, all)
-    };
-    let bodies = world.soft_bodies().map(|(_, body)| inside(body));
-    bodies.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
+        sum.all += own.all;
+        sum.resting += own.resting;
+    }
+    sum
 }
 
 /// Returns the mean strain of the elements in a region, weighted by volume. Only pieces with more than 50
 /// elements and with their centre in the region count.
-fn strain_inside<D: Dim>(world: &World<D>, views: &[Vec<PieceView>], region: &Shape<D>) -> f32 {
+fn strain_inside<D: Dim>(
+    bodies: &[Counted<'_, D>],
+    views: &[Vec<PieceView>],
+    region: &Shape<D>,
+) -> f32 {
     let (mut sum, mut volume) = (0.0, 0.0);
-    for ((_, body), pieces) in world.soft_bodies().zip(views) {
+    for ((_, body), pieces) in bodies.iter().zip(views) {
         let counts = |id: ElementId| {
             let view = &pieces[body.pieces().of_element(id).index()];
             let centre = D::Vector::from_vec3(view.centre);
@@ -290,7 +395,7 @@ fn is_inside<D: Dim>(region: &Shape<D>, position: Row) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{SQUEEZED, is_inside, strain_inside, views_of};
+    use super::{SQUEEZED, counted, is_inside, strain_inside, views_of};
     use crate::{Bot, BotKind, InputFrame, Level, Round};
     use fuwafuwa::{Dim2, Dim3, Shape, Vec3};
     use std::sync::Arc;
@@ -334,7 +439,8 @@ mod tests {
         }
         let (world, [low, high]) = (round.world(), round.level().arena());
         let room = Shape::cuboid(0.5 * (high - low)).translated(0.5 * (low + high));
-        let strain = strain_inside(world, &views_of(world), &room);
+        let bodies = counted(world, &[true]);
+        let strain = strain_inside(&bodies, &views_of(&bodies), &room);
         let limit = round.progress().squeezed;
         assert!(SQUEEZED < strain && strain < limit, "{strain}, {limit}");
         let flat = Round::<Dim2>::new(Arc::new(Level::open("classic").unwrap()));

@@ -43,6 +43,7 @@ pub fn records_seeds() -> Vec<Vec<u8>> {
             inside: 1.0,
             pieces: 12,
             lost: 0,
+            broken: 0,
         };
         reached.note(level, &outcome);
     }

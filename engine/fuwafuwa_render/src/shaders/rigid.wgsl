@@ -83,7 +83,9 @@ fn shadow(in: ShapeCorner) -> @location(0) vec4f {
 @fragment
 fn bar(in: ShapeCorner) -> @location(0) vec4f {
     let inside = -distance_to(in.at, in);
-    let alpha = smoothstep(-0.5, 0.5, inside / pixel());
+    // Glass has a clear inside and a visible edge.
+    let clear = in.form.z * mix(0.35, 0.78, smoothstep(0.0, 0.03, inside));
+    let alpha = smoothstep(-0.5, 0.5, inside / pixel()) * (1.0 - clear);
     // A box has rounded edges; other shapes are as thick as they are wide.
     let round = select(in.form.x, min(0.03, min(in.from_to.z, in.from_to.w)), in.form.y == 1.0);
     let steep = clamp(1.0 - inside / round, 0.0, 0.98);

@@ -8,7 +8,7 @@ use super::skin::Skin;
 use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
 use crate::palette::Palette;
-use crate::rigid::{MAX_WALLS, hands, obstacles};
+use crate::rigid::{MAX_WALLS, hands, is_glass, obstacles};
 use fuwafuwa::{Dim3, ElementId, MotionType, Shape, SoftBody, VoxelGrid, World};
 use glam::{Mat3, Vec3};
 use std::ops::Range;
@@ -36,13 +36,14 @@ pub struct Geometry {
     pub(crate) room: Vec<RoomVertex>,
     /// Outward normal and offset [m] of each half-space.
     pub(crate) walls: Vec<[f32; 4]>,
-    /// Instances of bars, hands, props, ghost hands, crumbs, dust, lines below hands, and the basket, in this
+    /// Instances of bars, hands, props, ghost hands and glass, crumbs, dust, lines below hands, and the basket, in this
     /// order.
     pub(crate) rounded: Vec<RoundedInstance>,
     pub(crate) bars: Range<u32>,
     pub(crate) hands: Range<u32>,
     pub(crate) props: Range<u32>,
-    pub(crate) ghost_hands: Range<u32>,
+    /// Hands of the ghost world, and glass.
+    pub(crate) clear: Range<u32>,
     pub(crate) crumbs: Range<u32>,
     pub(crate) dust: Range<u32>,
     pub(crate) lines: Range<u32>,
@@ -58,7 +59,7 @@ impl Geometry {
         self.stickers.clear();
         let palette = frame.palette;
         let colours = frame.colours();
-        let bars = obstacles(world);
+        let bars = obstacles(world).filter(|bar| !is_glass(*bar));
         let bars = bars.filter_map(|bar| RoundedInstance::of(bar.shape(), palette.bar, 0.0));
         self.bars = append(&mut self.rounded, bars);
         self.hands = append(&mut self.rounded, balls(world, palette));
@@ -79,7 +80,9 @@ impl Geometry {
             .ghost
             .into_iter()
             .flat_map(|ghost| balls(ghost, palette));
-        self.ghost_hands = append(&mut self.rounded, of_ghost);
+        let glass = obstacles(world).filter(|bar| is_glass(*bar));
+        let glass = glass.filter_map(|bar| RoundedInstance::of(bar.shape(), palette.glass, 0.0));
+        self.clear = append(&mut self.rounded, of_ghost.chain(glass));
         self.skins
             .resize_with(world.soft_bodies().count(), Skin::default);
         self.renewed.clear();

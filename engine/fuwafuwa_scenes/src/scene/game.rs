@@ -20,6 +20,13 @@ pub struct GameText {
     /// Time for which `share` of the mass must rest in the basket [s], 0 to 60; default 1.
     #[serde(default = "usual_hold")]
     pub hold: f32,
+    /// Whether the basket counts only while no hand touches a piece in it; default false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub alone: bool,
+    /// Numbers of the bodies that have to rest in the basket, counted from 1. If empty, all bodies. The others are
+    /// tools or furniture: goals ignore them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<usize>,
     /// Routes by which the level can be won. If empty, all routes that its materials allow.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub routes: Vec<RouteText>,
@@ -27,6 +34,9 @@ pub struct GameText {
     /// recorded round; in a level file they have no effect.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub assists: BTreeSet<AssistText>,
+    /// Aids that would make the level impossible, so that it ignores them.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    pub ignored_assists: BTreeSet<AssistText>,
     /// Optional goals of the level.
     #[serde(default)]
     pub wish: Vec<WishText>,
@@ -63,8 +73,22 @@ pub struct WishText {
     pub kept: Option<f32>,
     /// Minimum number of pieces when the level is won.
     pub pieces: Option<usize>,
+    /// Maximum number of pieces when the level is won.
+    pub max_pieces: Option<usize>,
+    /// State of the joints when the level is won.
+    pub joints: Option<JointsText>,
     /// Route by which the level must be won.
     pub route: Option<RouteText>,
+}
+
+/// State of the joints of a level when it is won.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JointsText {
+    /// No joint broke.
+    Whole,
+    /// At least one joint broke.
+    Broken,
 }
 
 /// Route by which a round was won.
@@ -97,9 +121,16 @@ impl GameText {
         self.basket.as_ref().map(shape).transpose()
     }
 
-    /// Checks every field.
-    pub(super) fn check<D: Dim>(&self) -> Result<(), FieldError> {
+    /// Checks every field. The scene has `bodies` bodies and `joints` joints.
+    pub(super) fn check<D: Dim>(&self, bodies: usize, joints: usize) -> Result<(), FieldError> {
         self.basket::<D>()?;
+        for (index, &number) in self.bodies.iter().enumerate() {
+            let field = format!("bodies.{}", index + 1);
+            let expected = format!("expected 1 to {bodies}, found {number}");
+            require((1..=bodies).contains(&number), &field, expected)?;
+            let expected = format!("expected each body once, found {number} again");
+            require(!self.bodies[..index].contains(&number), &field, expected)?;
+        }
         let expected = "expected a name of 1 to 60 letters";
         for (field, name) in [
             ("name.en", Some(&self.name.en)),
@@ -124,8 +155,15 @@ impl GameText {
             let kept = wish.kept.unwrap_or(1.0);
             let good = (0.0..=1.0).contains(&kept);
             require(good, "kept", expected("0 to 1", kept)).map_err(inside)?;
+            let [least, most] = [wish.pieces, wish.max_pieces];
+            let good = most.is_none_or(|most| most >= least.unwrap_or(1));
+            let expected = "expected at least 1, and not less than pieces";
+            require(good, "max_pieces", expected).map_err(inside)?;
+            let good = joints > 0 || wish.joints.is_none();
+            require(good, "joints", "expected a level with joints").map_err(inside)?;
             let given = wish != &WishText::default();
-            let expected = "expected one of seconds, kept, pieces and route at least";
+            let expected =
+                "expected at least one of seconds, kept, pieces, max_pieces, joints and route";
             require(given, "seconds", expected).map_err(inside)?;
         }
         Ok(())

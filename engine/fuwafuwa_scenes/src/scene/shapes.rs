@@ -1,5 +1,6 @@
 //! Obstacles, hands and shapes of a scene file.
 
+use super::body::LayersText;
 use super::error::{FieldError, require, vector_of};
 use fuwafuwa::{Dim, DimVector, Error, MotionType, RigidBody, RigidBodyHandle, Shape, Vec3, World};
 use serde::{Deserialize, Serialize};
@@ -20,6 +21,8 @@ pub struct ObstacleText {
     /// Coulomb friction, default 0.2.
     #[serde(default = "usual_friction")]
     pub friction: f32,
+    /// Contact layers.
+    pub layers: Option<LayersText>,
 }
 
 /// Half-space below a plane.
@@ -79,6 +82,12 @@ pub struct HandText {
     /// Whether the hand is kinematic and follows its path exactly; otherwise a spring pulls it along.
     #[serde(default)]
     pub kinematic: bool,
+    /// Maximum force of the spring [N], default 1000; not for a kinematic hand.
+    pub max_force: Option<f32>,
+    /// Coulomb friction, default 0.2.
+    pub friction: Option<f32>,
+    /// Contact layers.
+    pub layers: Option<LayersText>,
     /// Points of the path: time [s], then target position [m]; interpolated linearly.
     pub path: Vec<[f32; 4]>,
 }
@@ -91,7 +100,9 @@ impl ObstacleText {
             capsule: self.capsule.as_ref(),
             ball: self.ball.as_ref(),
         };
-        let obstacle = RigidBody::fixed(shape.only()?).with_friction(self.friction);
+        let obstacle = RigidBody::fixed(shape.only()?)
+            .with_friction(self.friction)
+            .with_layers(self.layers.map(Into::into).unwrap_or_default());
         let added = world.add_rigid_body(obstacle);
         added
             .map(|_| ())
@@ -166,12 +177,28 @@ impl HandText {
             before = seconds;
         }
         let shape = self.shape::<D>()?;
-        let motion_type = match self.kinematic {
+        let mut motion_type = match self.kinematic {
             true => MotionType::Kinematic,
             false => MotionType::default(),
         };
+        if let Some(force) = self.max_force {
+            let expected = "not allowed with kinematic = true";
+            require(!self.kinematic, "max_force", expected)?;
+            let good = force > 0.0;
+            let expected = format!("expected a positive force in N, found {force}");
+            require(good, "max_force", expected)?;
+            if let MotionType::Coupled { max_force, .. } = &mut motion_type {
+                *max_force = force;
+            }
+        }
         let start = vector_of::<D>("path", self.target(0.0))?;
-        let hand = RigidBody::new(shape, motion_type).at(start);
+        let hand = RigidBody::new(shape, motion_type)
+            .at(start)
+            .with_layers(self.layers.map(Into::into).unwrap_or_default());
+        let hand = match self.friction {
+            Some(friction) => hand.with_friction(friction),
+            None => hand,
+        };
         let added = world.add_rigid_body(hand);
         added
             .map(|_| ())
@@ -203,17 +230,23 @@ impl HandText {
 
     /// Returns the target position [m] at a time [s].
     pub fn target(&self, seconds: f32) -> [f32; 3] {
-        let place = |point: &[f32; 4]| [point[1], point[2], point[3]];
-        let after = self.path.iter().position(|point| point[0] >= seconds);
-        match after {
-            None => self.path.last().map_or([0.0; 3], place),
-            Some(0) => place(&self.path[0]),
-            Some(next) => {
-                let (from, to) = (&self.path[next - 1], &self.path[next]);
-                let share = (seconds - from[0]) / (to[0] - from[0]).max(1e-6);
-                let (from, to) = (place(from), place(to));
-                [0, 1, 2].map(|axis: usize| from[axis] + share * (to[axis] - from[axis]))
-            }
+        point_at(&self.path, seconds)
+    }
+}
+
+/// Returns the position [m] on a path at a time [s]. The points of the path are a time [s] and a position [m], in
+/// the order of time. Before the first point and after the last one the position stays; an empty path stays at 0.
+pub fn point_at(path: &[[f32; 4]], seconds: f32) -> [f32; 3] {
+    let place = |point: &[f32; 4]| [point[1], point[2], point[3]];
+    let after = path.iter().position(|point| point[0] >= seconds);
+    match after {
+        None => path.last().map_or([0.0; 3], place),
+        Some(0) => place(&path[0]),
+        Some(next) => {
+            let (from, to) = (&path[next - 1], &path[next]);
+            let share = (seconds - from[0]) / (to[0] - from[0]).max(1e-6);
+            let (from, to) = (place(from), place(to));
+            [0, 1, 2].map(|axis: usize| from[axis] + share * (to[axis] - from[axis]))
         }
     }
 }

@@ -11,6 +11,7 @@ mod hint;
 mod maps;
 mod opening;
 mod rest_frame;
+mod ropes;
 mod stage;
 
 pub use confetti::Confetti;

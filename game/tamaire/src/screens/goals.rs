@@ -59,7 +59,10 @@ fn goals(round: &AnyRound, said: &Words) -> Vec<Goal> {
     let (progress, rules) = (round.progress(), round.level().game());
     let basket = round.has_basket().then(|| Goal {
         icon: GoalIcon::Basket,
-        short: (said.share)(progress.inside, rules.share),
+        short: match progress.waits_for_hand(rules) {
+            true => said.let_go.into(),
+            false => (said.share)(progress.inside, rules.share),
+        },
         long: (said.share_in_basket)(progress.inside, rules.share),
         state: match progress.outcome {
             Some(_) => WishState::Done,

@@ -6,7 +6,7 @@ use crate::input::{Action, InputMethod};
 use crate::settings::Quality;
 use force_feedback::{Ability, Stop};
 use fuwafuwa_scenes::import::{ImportNote, NoteKind};
-use tamaire_play::{Assist, Route};
+use tamaire_play::{Assist, Joints, Route};
 
 pub(super) const WORDS: Words = Words {
     play: "Play",
@@ -43,7 +43,18 @@ pub(super) const WORDS: Words = Words {
             wish.kept
                 .map(|least| format!("keep at least {} %", percent_of_limit(least))),
         );
-        parts.extend(wish.pieces.map(|least| format!("at least {least} pieces")));
+        parts.extend(match (wish.pieces, wish.max_pieces) {
+            (None, None) => None,
+            (Some(least), None) => Some(format!("at least {least} pieces")),
+            (Some(least), Some(most)) if least == most => Some(format!("exactly {least} pieces")),
+            (Some(least), Some(most)) => Some(format!("{least} to {most} pieces")),
+            (None, Some(1)) => Some("in one piece".into()),
+            (None, Some(most)) => Some(format!("at most {most} pieces")),
+        });
+        parts.extend(wish.joints.map(|joints| match joints {
+            Joints::Whole => "let no rope break".to_string(),
+            Joints::Broken => "break a rope".to_string(),
+        }));
         parts.join(", ")
     },
     summary: |outcome| {
@@ -58,6 +69,7 @@ pub(super) const WORDS: Words = Words {
         ]
     },
     new_best: "New best!",
+    let_go: "Let go!",
     hopeless: "Not enough of the body is left to win.",
     watch: "Watch",
     race: "Race it",
@@ -98,6 +110,7 @@ pub(super) const WORDS: Words = Words {
         Assist::Unbreakable => "Unbreakable body",
     },
     assisted: "easier play",
+    assist_ignored: |name| format!("\"{name}\" is off here: this level cannot be won with it."),
     legend: [
         "won",
         "star earned",
@@ -266,7 +279,18 @@ pub(super) const WORDS: Words = Words {
             wish.kept
                 .map(|least| format!("keep {} %", percent_of_limit(least))),
         );
-        parts.extend(wish.pieces.map(|least| format!("{least} pieces")));
+        parts.extend(match (wish.pieces, wish.max_pieces) {
+            (None, None) => None,
+            (Some(least), None) => Some(format!("{least} pieces")),
+            (Some(least), Some(most)) if least == most => Some(format!("= {least} pieces")),
+            (Some(least), Some(most)) => Some(format!("{least} to {most} pieces")),
+            (None, Some(1)) => Some("one piece".into()),
+            (None, Some(most)) => Some(format!("≤ {most} pieces")),
+        });
+        parts.extend(wish.joints.map(|joints| match joints {
+            Joints::Whole => "rope whole".to_string(),
+            Joints::Broken => "rope broken".to_string(),
+        }));
         parts.join(", ")
     },
     share: |found, needed| format!("{} / {} %", percent_below(found), percent_of_limit(needed)),
@@ -287,6 +311,18 @@ pub(super) const WORDS: Words = Words {
             missed
                 .pieces
                 .map(|least| format!("{} of {least}", outcome.pieces)),
+            missed
+                .max_pieces
+                .map(|_| format!("{} pieces", outcome.pieces)),
+            missed.joints.map(|joints| match joints {
+                Joints::Whole => "a rope broke".to_string(),
+                Joints::Broken => "no rope broke".to_string(),
+            }),
+            missed.route.map(|_| match outcome.route {
+                Route::Squeeze => "it went in whole".to_string(),
+                Route::Shave => "it was shaved".to_string(),
+                Route::Mix => "it was shaved and squeezed".to_string(),
+            }),
         ];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         (!parts.is_empty()).then(|| parts.join(", "))

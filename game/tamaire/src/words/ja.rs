@@ -8,7 +8,7 @@ use force_feedback::{Ability, Stop};
 use fuwafuwa_scenes::import::{ImportNote, NoteKind};
 use tamaire_play::level::LevelError;
 use tamaire_play::link::{LinkError, MAX_LENGTH};
-use tamaire_play::{Assist, ReplayError, Route};
+use tamaire_play::{Assist, Joints, ReplayError, Route};
 
 pub(super) const WORDS: Words = Words {
     play: "あそぶ",
@@ -45,7 +45,18 @@ pub(super) const WORDS: Words = Words {
             wish.kept
                 .map(|least| format!("{}％以上のこす", percent_of_limit(least))),
         );
-        parts.extend(wish.pieces.map(|least| format!("{least}こ以上にわける")));
+        parts.extend(match (wish.pieces, wish.max_pieces) {
+            (None, None) => None,
+            (Some(least), None) => Some(format!("{least}こ以上にわける")),
+            (Some(least), Some(most)) if least == most => Some(format!("ちょうど{least}こ")),
+            (Some(least), Some(most)) => Some(format!("{least}こから{most}こまで")),
+            (None, Some(1)) => Some("ちぎらない".into()),
+            (None, Some(most)) => Some(format!("{most}こまで")),
+        });
+        parts.extend(wish.joints.map(|joints| match joints {
+            Joints::Whole => "ひもを切らない".to_string(),
+            Joints::Broken => "ひもを切る".to_string(),
+        }));
         parts.join("・")
     },
     summary: |outcome| {
@@ -60,6 +71,7 @@ pub(super) const WORDS: Words = Words {
         ]
     },
     new_best: "新記録！",
+    let_go: "手をはなして！",
     hopeless: "のこりが たりなくて、もうクリアできないよ。",
     watch: "見る",
     race: "きょうそう",
@@ -100,6 +112,9 @@ pub(super) const WORDS: Words = Words {
         Assist::Unbreakable => "ちぎれない体",
     },
     assisted: "やさしいモード",
+    assist_ignored: |name| {
+        format!("「{name}」は ここでは使えません。このステージがクリアできなくなるからです。")
+    },
     legend: [
         "クリア",
         "目標クリア",
@@ -268,7 +283,18 @@ pub(super) const WORDS: Words = Words {
             wish.kept
                 .map(|least| format!("{}％のこす", percent_of_limit(least))),
         );
-        parts.extend(wish.pieces.map(|least| format!("{least}こ")));
+        parts.extend(match (wish.pieces, wish.max_pieces) {
+            (None, None) => None,
+            (Some(least), None) => Some(format!("{least}こ")),
+            (Some(least), Some(most)) if least == most => Some(format!("{least}こちょうど")),
+            (Some(least), Some(most)) => Some(format!("{least}〜{most}こ")),
+            (None, Some(1)) => Some("ちぎらない".into()),
+            (None, Some(most)) => Some(format!("{most}こまで")),
+        });
+        parts.extend(wish.joints.map(|joints| match joints {
+            Joints::Whole => "ひもを切らない".to_string(),
+            Joints::Broken => "ひもを切る".to_string(),
+        }));
         parts.join("・")
     },
     share: |found, needed| format!("{}／{}％", percent_below(found), percent_of_limit(needed)),
@@ -285,7 +311,16 @@ pub(super) const WORDS: Words = Words {
             missed
                 .kept
                 .map(|_| format!("{}％だった", percent_below(outcome.kept))),
-            missed.pieces.map(|_| format!("{}こだった", outcome.pieces)),
+            { missed.pieces.or(missed.max_pieces) }.map(|_| format!("{}こだった", outcome.pieces)),
+            missed.joints.map(|joints| match joints {
+                Joints::Whole => "ひもが切れた".to_string(),
+                Joints::Broken => "ひもは切れなかった".to_string(),
+            }),
+            missed.route.map(|_| match outcome.route {
+                Route::Squeeze => "まるごと入った".to_string(),
+                Route::Shave => "けずって入れた".to_string(),
+                Route::Mix => "けずって おしこんだ".to_string(),
+            }),
         ];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         (!parts.is_empty()).then(|| parts.join("・"))

@@ -101,12 +101,13 @@ mod tests {
             inside: 0.7,
             pieces: 3,
             lost: 0,
+            broken: 0,
         };
         let wish = |seconds, kept, pieces| Wish {
             seconds,
             kept,
             pieces,
-            route: None,
+            ..Wish::default()
         };
         for (wish, english, japanese) in [
             (
@@ -148,6 +149,7 @@ mod tests {
             inside: 0.5999,
             pieces: 3,
             lost: 0,
+            broken: 0,
         };
         let values = |language: Language| (language.words().summary)(&outcome).map(|row| row.1);
         let english = ["20.1 s", "89 %", "59 %", "3"].map(String::from);

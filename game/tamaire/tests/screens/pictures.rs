@@ -33,6 +33,7 @@ const WON: Outcome = Outcome {
     inside: 1.0,
     pieces: 1,
     lost: 0,
+    broken: 0,
 };
 
 fn picture(window: &mut Window, name: &str) {

@@ -136,6 +136,7 @@ fn instructions_return_when_player_is_stuck() {
         inside: 1.0,
         pieces: 1,
         lost: 0,
+        broken: 0,
     };
     game(&mut window).records.note(&level, &won);
     start(&mut window, "hoop");

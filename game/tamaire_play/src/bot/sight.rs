@@ -273,7 +273,7 @@ fn across<D: Dim>(axis: Vec3) -> Vec3 {
 }
 
 /// Returns the distance from a position to the nearest obstacle [m]; negative inside an obstacle.
-fn clearance<D: Dim>(at: Vec3, obstacles: &[Shape<D>]) -> f32 {
+pub(super) fn clearance<D: Dim>(at: Vec3, obstacles: &[Shape<D>]) -> f32 {
     let at = D::Vector::from_vec3(at);
     let distances = obstacles.iter().map(|shape| shape.distance(at).0);
     distances.fold(f32::INFINITY, f32::min)

@@ -2,27 +2,27 @@
 
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, MotionType, Shape, Vec3};
 use std::sync::Arc;
-use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::level::{NAMED, built_in};
 use tamaire_play::replay::VERSION;
 use tamaire_play::{Bot, BotKind, InputFrame, Level, Playback, Replay, ReplayError, Round};
 
 #[test]
 fn bodies_stay_whole_without_input_and_in_the_room_with_input() {
-    for (id, _) in NAMED {
-        stays_whole_and_in_the_room::<Dim2>(id, 180);
-    }
-    for (id, _) in NAMED_3D {
-        stays_whole_and_in_the_room::<Dim3>(id, 120);
+    for (id, _) in built_in() {
+        match Level::open(id).unwrap().scene().dim {
+            2 => stays_whole_and_in_the_room::<Dim2>(id, 180),
+            _ => stays_whole_and_in_the_room::<Dim3>(id, 120),
+        }
     }
 }
 
 #[test]
 fn arena_is_closed_on_every_side() {
-    for (id, _) in NAMED {
-        is_closed::<Dim2>(id);
-    }
-    for (id, _) in NAMED_3D {
-        is_closed::<Dim3>(id);
+    for (id, _) in built_in() {
+        match Level::open(id).unwrap().scene().dim {
+            2 => is_closed::<Dim2>(id),
+            _ => is_closed::<Dim3>(id),
+        }
     }
 }
 

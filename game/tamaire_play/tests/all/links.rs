@@ -4,7 +4,7 @@ use fastrand::Rng;
 use fuwafuwa::Vec3;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::level::{NAMED, built_in};
 use tamaire_play::link::{MAX_LENGTH, address, is_link};
 use tamaire_play::{
     AnyRound, Assist, Bot, BotKind, InputFrame, Level, Link, LinkError, Playback, Replay,
@@ -291,7 +291,7 @@ fn link_reproduces_two_hands_that_come_and_go() {
 
 #[test]
 fn link_of_a_built_in_level_has_its_name_only() {
-    for (id, _) in NAMED.iter().chain(&NAMED_3D) {
+    for (id, _) in built_in() {
         let level = open(id);
         let link = level.link().unwrap();
         assert!(link.len() < 50, "{id}: {}", link.len());

@@ -6,3 +6,4 @@ mod levels;
 mod links;
 mod models;
 mod pictures;
+mod ways;

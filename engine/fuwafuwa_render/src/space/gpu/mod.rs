@@ -323,7 +323,7 @@ impl Renderer {
                 draw_mesh(&self.meter, &mut pass, buffers, 0..1);
             }
         }
-        let hands = (&pipelines.ghost_hand, &self.fine, &geometry.ghost_hands);
+        let hands = (&pipelines.ghost_hand, &self.fine, &geometry.clear);
         self.draw_rounded(&mut pass, [hands]);
     }
 

@@ -15,7 +15,7 @@ use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{RichText, Sense, Ui, vec2};
 use jiff::ToSpan;
 use jiff::civil::Time;
-use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::level::built_in;
 use tamaire_sound::Menu;
 
 /// Width of a page [points].
@@ -338,9 +338,8 @@ fn levels(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<ConfigChange> {
     let mut changed = None;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
-        let named = NAMED.iter().chain(&NAMED_3D).map(|(id, _)| id);
         let known = { stand.known.iter() }.filter(|level| level.game().basket.is_some());
-        for level in known.filter(|level| named.clone().any(|id| *id == level.id)) {
+        for level in known.filter(|level| built_in().any(|(id, _)| id == level.id)) {
             let (id, name) = (
                 level.id.as_str(),
                 game.settings.language.of(&level.game().name),

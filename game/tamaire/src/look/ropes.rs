@@ -1,0 +1,73 @@
+//! Ropes, springs and pins between bodies.
+
+use super::DrawOptions;
+use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2};
+use fuwafuwa::{Dim, DimVector, JointKind, World};
+
+/// Colours of the rim and of the inside of a rope.
+const ROPE: [Color32; 2] = [
+    Color32::from_rgb(120, 84, 52),
+    Color32::from_rgb(214, 178, 120),
+];
+/// Width of a rope [m].
+const WIDTH: f32 = 0.03;
+/// Number of segments of a hanging rope.
+const SEGMENTS: usize = 16;
+/// Number of turns of a spring.
+const TURNS: usize = 9;
+
+/// Draws the joints of a world. A slack rope hangs down.
+pub(super) fn draw<D: Dim>(painter: &Painter, world: &World<D>, look: &DrawOptions) {
+    for (handle, joint) in world.joints() {
+        let Ok(Some(anchors)) = world.joint_anchor_positions(handle) else {
+            continue;
+        };
+        let places = anchors.map(DimVector::to_vec3);
+        let scale = look.view.scale_at(0.5 * (places[0] + places[1]));
+        let ends = places.map(|at| look.view.to_screen(at));
+        let distance = (places[1] - places[0]).length();
+        let width = scale * WIDTH;
+        let line = match joint.definition().kind {
+            JointKind::Rope { length } => {
+                // A parabola with this sag is about as long as the rope.
+                let slack = (length * length - distance * distance).max(0.0);
+                hanging(ends, scale * (0.375 * slack).sqrt())
+            }
+            JointKind::Spring { .. } => zigzag(ends, 2.0 * width),
+            _ => {
+                painter.circle(ends[0], width, ROPE[1], Stroke::new(0.4 * width, ROPE[0]));
+                continue;
+            }
+        };
+        painter.add(Shape::line(line.clone(), Stroke::new(width, ROPE[0])));
+        painter.add(Shape::line(line, Stroke::new(0.5 * width, ROPE[1])));
+        for end in ends {
+            painter.circle_filled(end, 0.9 * width, ROPE[0]);
+        }
+    }
+}
+
+/// Returns a parabola between two points whose middle hangs down by `sag` [points].
+fn hanging([from, to]: [Pos2; 2], sag: f32) -> Vec<Pos2> {
+    let place = |step: usize| {
+        let share = step as f32 / SEGMENTS as f32;
+        from.lerp(to, share) + Vec2::Y * (4.0 * sag * share * (1.0 - share))
+    };
+    (0..=SEGMENTS).map(place).collect()
+}
+
+/// Returns a zigzag line between two points that deviates by `width` to both sides [points].
+fn zigzag([from, to]: [Pos2; 2], width: f32) -> Vec<Pos2> {
+    let across = (to - from).normalized().rot90();
+    let steps = 2 * TURNS;
+    let place = |step: usize| {
+        let side = match step {
+            0 => 0.0,
+            step if step == steps => 0.0,
+            step if step.is_multiple_of(2) => -width,
+            _ => width,
+        };
+        from.lerp(to, step as f32 / steps as f32) + side * across
+    };
+    (0..=steps).map(place).collect()
+}

@@ -1,0 +1,182 @@
+//! Measures whether a level asks for more than a straight push, and whether its ways win.
+//!
+//! `cargo run --release -p tamaire_play --example ways -- FOLDER` reads `level.toml` and `ways.toml` in a folder. It
+//! prints
+//!
+//! - for each way, its result without trembling and with the seeds 1 to `--shakes`,
+//! - for each straight bot at 0.3, 0.7 and 3 m/s, the number of rounds of a minute that it wins, out of `--starts`,
+//!   and the mean of the greatest share that it had in the basket.
+//!
+//! `--save FOLDER` writes a replay of each way and of the first round of each straight bot.
+
+use clap::Parser;
+use std::error::Error;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::thread;
+use tamaire_play::bot::StraightPush;
+use tamaire_play::{AnyRound, Level, Outcome, Ways};
+
+/// Time limit of a round [ticks].
+const MINUTE: usize = 60 * 60;
+/// Speeds of the straight bots [m/s].
+const SPEEDS: [f32; 3] = [0.3, 0.7, 3.0];
+
+/// Measures whether a level asks for more than a straight push, and whether its ways win.
+#[derive(Parser)]
+struct Options {
+    /// Folder of the level.
+    folder: PathBuf,
+    /// Number of rounds of each straight bot at each speed.
+    #[arg(long, default_value_t = 4)]
+    starts: u64,
+    /// Number of trembling rounds of each way.
+    #[arg(long, default_value_t = 2)]
+    shakes: u64,
+    /// Plays only the way with this number, and prints its progress each second.
+    #[arg(long)]
+    way: Option<usize>,
+    /// Folder for replays.
+    #[arg(long)]
+    save: Option<PathBuf>,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let options = Options::parse();
+    let level = options.folder.join("level.toml");
+    let level = Level::read(&level.display().to_string(), &fs::read(&level)?, &|name| {
+        fs::read(options.folder.join(name))
+    })?;
+    let level = Arc::new(level);
+    let ways = Ways::read(&fs::read_to_string(options.folder.join("ways.toml"))?)?;
+    let save = |name: String, round: &AnyRound| -> Result<(), Box<dyn Error>> {
+        if let Some(folder) = &options.save {
+            fs::create_dir_all(folder)?;
+            fs::write(folder.join(name), round.replay().text())?;
+        }
+        Ok(())
+    };
+    for (index, way) in ways.way.iter().enumerate() {
+        let number = index + 1;
+        match options.way {
+            Some(chosen) if chosen != number => continue,
+            Some(_) => watch(&level, way),
+            None => {}
+        }
+        for shake in 0..=options.shakes {
+            let mut round = AnyRound::new(level.clone());
+            let outcome = way.play(&mut round, (shake > 0).then_some(shake));
+            println!(
+                "way {number}, shake {shake}: {}",
+                told(&level, &round, outcome)
+            );
+            if shake == 0 {
+                save(format!("way-{number}.tamaire"), &round)?;
+            }
+        }
+    }
+    if options.way.is_none() {
+        straight(&level, options.starts, save)?;
+    }
+    Ok(())
+}
+
+/// Prints the progress of a way each second.
+fn watch(level: &Arc<Level>, way: &tamaire_play::Way) {
+    let mut round = AnyRound::new(level.clone());
+    for tick in 0..((way.seconds() + 4.0) * 60.0) as u64 {
+        round.step(way.frame(tick));
+        if tick % 30 == 29 {
+            let progress = round.progress();
+            let hands = round.hands();
+            println!(
+                "{:5.1} s: hand {:.2?}, in {:.2} (rests {:.2}, touched {}), kept {:.2}, {} pieces",
+                (tick + 1) as f32 / 60.0,
+                hands[0].position.to_array(),
+                progress.within,
+                progress.inside,
+                progress.touched,
+                progress.kept,
+                progress.pieces
+            );
+        }
+    }
+}
+
+fn told(level: &Level, round: &AnyRound, outcome: Option<Outcome>) -> String {
+    let progress = round.progress();
+    match outcome {
+        None => format!(
+            "lost, in {:.2} (rests {:.2}), kept {:.2}, {} pieces",
+            progress.within, progress.inside, progress.kept, progress.pieces
+        ),
+        Some(won) => {
+            let wishes = level.game().wish.iter().enumerate();
+            let wishes = wishes.filter(|(_, wish)| won.fulfils(wish));
+            let wishes: Vec<usize> = wishes.map(|(index, _)| index + 1).collect();
+            format!(
+                "won after {:.1} s, {:?}, kept {:.2}, in {:.2}, {} pieces, {} lost, wishes {wishes:?}",
+                won.seconds(),
+                won.route,
+                won.kept,
+                won.inside,
+                won.pieces,
+                won.lost
+            )
+        }
+    }
+}
+
+type Save<'a> = dyn Fn(String, &AnyRound) -> Result<(), Box<dyn Error>> + 'a;
+
+fn straight(
+    level: &Arc<Level>,
+    starts: u64,
+    save: impl Fn(String, &AnyRound) -> Result<(), Box<dyn Error>>,
+) -> Result<(), Box<dyn Error>> {
+    let save: &Save = &save;
+    for (name, chases) in [("line", false), ("chase", true)] {
+        for speed in SPEEDS {
+            let play = |seed: u64| {
+                let mut round = AnyRound::new(level.clone());
+                let mut bot = StraightPush::new(chases, speed, seed);
+                let mut most = 0.0_f32;
+                for _ in 0..MINUTE {
+                    let frame = match &round {
+                        AnyRound::Plane(round) => bot.frame(round),
+                        AnyRound::Space(round) => bot.frame(round),
+                    };
+                    round.step(frame);
+                    most = most.max(round.progress().inside);
+                    if round.progress().outcome.is_some() {
+                        break;
+                    }
+                }
+                (round, most)
+            };
+            let rounds = thread::scope(|scope| {
+                let half = |first: u64| {
+                    let play = &play;
+                    scope.spawn(move || (first..starts).step_by(2).map(play).collect::<Vec<_>>())
+                };
+                let halves = [half(0), half(1)];
+                halves.map(|half| half.join().expect("a round panicked"))
+            });
+            let rounds: Vec<_> = rounds.into_iter().flatten().collect();
+            let won = rounds
+                .iter()
+                .filter(|(round, _)| round.progress().outcome.is_some());
+            let most =
+                rounds.iter().map(|(_, most)| most).sum::<f32>() / rounds.len().max(1) as f32;
+            println!(
+                "{name} at {speed} m/s: won {} of {starts}, greatest share {most:.2} in the mean",
+                won.count()
+            );
+            if let Some((round, _)) = rounds.first() {
+                save(format!("{name}-{speed}.tamaire"), round)?;
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,153 @@
+//! Bots that only push straight. A level is too simple if one of them wins it.
+
+use super::map::Map;
+use super::sight::{clearance, unit};
+use crate::{InputFrame, Round};
+use fuwafuwa::{DEFAULT_TICK, Dim, DimVector, MotionType, PieceView, Shape, Vec3};
+
+/// Speed of the hand on the way to the start of a push [m/s].
+const BRISK: f32 = 3.0;
+/// Cost of a step through a cell with an obstacle or a body, relative to a free cell.
+const OBSTACLE: f32 = 1000.0;
+/// Distance from the start of a push at which the push begins [m].
+const NEAR: f32 = 0.08;
+/// Maximum time of one way to the start of a push [ticks]. Then the push begins wherever the hand is.
+const PATIENCE: u32 = 240;
+/// Time for which the hand presses at the end of a push [ticks].
+const PRESS: u32 = 90;
+/// Time for which the hand is drawn back after a push [ticks].
+const REST: u32 = 90;
+
+/// Bot that goes behind the body and pushes it straight towards the basket, draws back, and does so again.
+#[derive(Clone, Debug)]
+pub struct StraightPush {
+    /// Whether the bot aims again in each tick, at the largest piece outside the basket. Otherwise it keeps the
+    /// line on which a push began.
+    chases: bool,
+    /// Speed of the pushing hand [m/s].
+    speed: f32,
+    /// Offset of the line of the push across the body, from −1 to 1, as a share of half the body's width.
+    offset: f32,
+    stage: Stage,
+}
+
+/// Stage of a push, with the number of ticks in it.
+#[derive(Copy, Clone, Debug)]
+enum Stage {
+    /// On the way to the start of the push.
+    Reach(u32),
+    /// Pushing along a direction.
+    Push(Vec3, u32),
+    /// Drawing back against the direction of the push.
+    Rest(Vec3, u32),
+}
+
+impl StraightPush {
+    /// Creates a bot that pushes at `speed` [m/s]. Seeds differ in where the push meets the body: at most a third
+    /// of the body's half width beside its middle.
+    pub fn new(chases: bool, speed: f32, seed: u64) -> Self {
+        let mut random = fastrand::Rng::with_seed(seed);
+        Self {
+            chases,
+            speed,
+            offset: (2.0 * random.f32() - 1.0) / 3.0,
+            stage: Stage::Reach(0),
+        }
+    }
+
+    /// Returns the input for the next tick. Without a basket the hand rests.
+    pub fn frame<D: Dim>(&mut self, round: &Round<D>) -> InputFrame {
+        match self.target(round) {
+            Some(target) => InputFrame::towards(target),
+            None => InputFrame::default(),
+        }
+    }
+
+    fn target<D: Dim>(&mut self, round: &Round<D>) -> Option<Vec3> {
+        let basket = round.basket()?;
+        let hand = round.hands().next()?;
+        let radius = hand.shape().inradius();
+        let (hand, goal) = (hand.position().to_vec3(), hand.target_position().to_vec3());
+        let [low, high] = basket.bounds().map(DimVector::to_vec3);
+        let nest = 0.5 * (low + high);
+        let aim = aim(round, basket)?;
+        let half = 0.5 * (aim.high - aim.low);
+        let towards = unit(nest - aim.centre);
+        let across = match D::N {
+            2 => Vec3::new(-towards.y, towards.x, 0.0),
+            _ => unit(towards.cross(Vec3::Y) + Vec3::splat(1e-6)),
+        };
+        let width = (across * half).length();
+        let start = |way: Vec3| {
+            let reach = (way * half).length() + 1.1 * radius;
+            aim.centre + across * (self.offset * width) - way * reach
+        };
+        let end = |way: Vec3| nest + way * (0.5 * (high - low).length());
+        let (stage, target) = match self.stage {
+            Stage::Reach(ticks) => {
+                let place = start(towards);
+                let is_there = (hand - place).length() < NEAR || ticks > PATIENCE;
+                let stage = match is_there {
+                    true => Stage::Push(towards, 0),
+                    false => Stage::Reach(ticks + 1),
+                };
+                let next = map_of(round, radius).next(hand, place);
+                (stage, step(goal, next, BRISK))
+            }
+            Stage::Push(way, ticks) => {
+                let way = if self.chases { towards } else { way };
+                let is_done = (goal - end(way)).length() < NEAR || ticks > 4 * PATIENCE;
+                let stage = match is_done && ticks > PRESS {
+                    true => Stage::Rest(way, 0),
+                    false => Stage::Push(way, ticks + 1),
+                };
+                // Keeps on the line of the push, which the hand may have been pressed off.
+                let aside = (start(way) - goal) - way * (start(way) - goal).dot(way);
+                let line = if self.chases { aside } else { Vec3::ZERO };
+                (stage, step(goal, end(way) + line, self.speed))
+            }
+            Stage::Rest(way, ticks) => {
+                let stage = match ticks > REST {
+                    true => Stage::Reach(0),
+                    false => Stage::Rest(way, ticks + 1),
+                };
+                (stage, step(goal, goal - way, 0.5 * BRISK))
+            }
+        };
+        self.stage = stage;
+        Some(target)
+    }
+}
+
+/// Returns the largest piece with its centre outside the basket; the largest one if all are inside.
+fn aim<D: Dim>(round: &Round<D>, basket: &Shape<D>) -> Option<PieceView> {
+    let bodies = round.counted_bodies();
+    let mut views: Vec<PieceView> = bodies.flat_map(|body| body.piece_views()).collect();
+    views.sort_by(|a, b| b.mass.total_cmp(&a.mass));
+    let is_out = |view: &&PieceView| basket.distance(D::Vector::from_vec3(view.centre)).0 > 0.0;
+    views.iter().find(is_out).or(views.first()).cloned()
+}
+
+/// Returns a map of the room for a hand of a radius [m], with its fixed obstacles and all bodies.
+fn map_of<D: Dim>(round: &Round<D>, radius: f32) -> Map {
+    let rigid = round.world().rigid_bodies().map(|(_, body)| body);
+    let fixed = rigid.filter(|body| body.motion_type() == MotionType::Fixed);
+    let obstacles: Vec<Shape<D>> = fixed.map(|body| body.shape()).collect();
+    let cost = |at| match clearance(at, &obstacles) < 0.9 * radius {
+        true => OBSTACLE,
+        false => 1.0,
+    };
+    let mut map = Map::new::<D>(round.level().arena(), cost);
+    for (_, body) in round.world().soft_bodies() {
+        for (id, _) in body.mesh().nodes() {
+            map.add(body.node_state(id).0.to_vec3(), 1.0);
+        }
+    }
+    map
+}
+
+/// Returns the next target on the straight line from one position to another, at a speed [m/s].
+fn step(from: Vec3, to: Vec3, speed: f32) -> Vec3 {
+    let way = to - from;
+    from + way * (speed * DEFAULT_TICK / way.length().max(1e-6)).min(1.0)
+}

@@ -1,0 +1,49 @@
+//! Levels of the path: their chapters and order. Each level has a folder `levels/NAME` with the level, its ways to
+//! win, and its pictures or models, if it has any.
+
+use super::Level;
+use crate::Ways;
+
+/// A level of the path.
+#[derive(Copy, Clone, Debug)]
+pub struct PathLevel {
+    /// Name of the level.
+    pub id: &'static str,
+    /// Chapter, counted from 1.
+    pub chapter: usize,
+    /// Text of the level.
+    pub text: &'static str,
+    /// Text of the ways to win.
+    ways: &'static str,
+}
+
+macro_rules! level {
+    ($chapter:literal, $id:literal) => {
+        PathLevel {
+            id: $id,
+            chapter: $chapter,
+            text: include_str!(concat!("../../levels/", $id, "/level.toml")),
+            ways: include_str!(concat!("../../levels/", $id, "/ways.toml")),
+        }
+    };
+}
+
+/// Levels of the path, in order.
+pub const PATH: [PathLevel; 4] = [
+    level!(1, "under-the-table"),
+    level!(2, "ring-and-peg"),
+    level!(4, "walk-the-dog"),
+    level!(5, "make-a-nest"),
+];
+
+impl PathLevel {
+    /// Opens the level.
+    pub fn open(&self) -> Level {
+        Level::open(self.id).expect("tests open every level of the path")
+    }
+
+    /// Returns the ways to win the level.
+    pub fn ways(&self) -> Ways {
+        Ways::read(self.ways).expect("tests read the ways of every level")
+    }
+}
