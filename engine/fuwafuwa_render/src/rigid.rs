@@ -103,8 +103,7 @@ pub fn obstacles<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<
     bodies.filter(|body| !body.follows_target() && !body.is_sensor())
 }
 
-/// Returns whether a rigid body is drawn as glass, because it lets bodies with the default layers through. For
-/// example a fence that stops only hands.
+/// Returns whether a rigid body is drawn as glass: bodies with the default layers pass through it.
 pub fn is_glass<D: Dim>(body: RigidBodyRef<'_, D>) -> bool {
     !body.layers().meet(Layers::default())
 }

@@ -41,7 +41,7 @@
 //!
 //! [[hand]]                        # rigid body that follows a path
 //! radius = 0.1                    # [m]; or a box or a capsule
-//! layers = { memberships = 2 }    # obstacles and hands have layers, too; a fence stops hands only
+//! layers = { memberships = 2 }    # collision layers, also allowed for obstacles
 //! path = [[0.0, -0.3, 0.5, 0.0], [1.0, 1.2, 0.5, 0.0]]   # time [s], then position [m]
 //!
 //! [[rigid_body]]                  # any rigid body; its shape is given as if it stood at the origin
@@ -363,7 +363,9 @@ impl Scene {
         let Some(game) = &self.game else {
             return Ok(None);
         };
-        let checked = game.check::<D>(self.body.len(), self.joint.len());
+        let joints = self.joint.iter();
+        let joints = joints.filter(|joint| joint.breaking_force.is_some());
+        let checked = game.check::<D>(self.body.len(), joints.count());
         let basket = checked.and_then(|()| game.basket::<D>());
         basket.map_err(|wrong| self.origin.error(wrong.under("game")))
     }

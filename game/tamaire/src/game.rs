@@ -235,20 +235,22 @@ impl Game {
 
     /// Starts a level with the chosen assists, and with the ghost of the best round if the player wants it.
     fn play(&mut self, level: &Arc<Level>) {
+        if self.bout.round().level().id != level.id {
+            let (said, chosen) = (self.words(), &self.settings.assists);
+            for &assist in chosen.intersection(&level.game().ignored_assists) {
+                self.notices
+                    .tell(&(said.assist_ignored)((said.assist)(assist)));
+            }
+        }
         let level = self.eased(level);
         self.begin(self.with_best(Session::of_people(level)));
     }
 
-    /// Returns the level with the chosen assists applied.
+    /// Returns the level with the chosen assists applied, except those that the level ignores.
     fn eased(&mut self, level: &Arc<Level>) -> Arc<Level> {
         let ignored = &level.game().ignored_assists;
         let chosen = &self.settings.assists;
         let assists: BTreeSet<Assist> = chosen.difference(ignored).copied().collect();
-        let said = self.words();
-        for &assist in chosen.intersection(ignored) {
-            self.notices
-                .tell(&(said.assist_ignored)((said.assist)(assist)));
-        }
         if assists.is_empty() {
             return level.clone();
         }

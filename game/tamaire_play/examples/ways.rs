@@ -4,8 +4,7 @@
 //! prints
 //!
 //! - for each way, its result without trembling and with the seeds 1 to `--shakes`,
-//! - for each straight bot at 0.3, 0.7 and 3 m/s, the number of rounds of a minute that it wins, out of `--starts`,
-//!   and the mean of the greatest share that it had in the basket.
+//! - for each straight bot at 0.3, 0.7 and 3 m/s, the number of rounds of a minute that it wins, out of `--starts`.
 //!
 //! `--save FOLDER` writes a replay of each way and of the first round of each straight bot.
 
@@ -34,7 +33,7 @@ struct Options {
     /// Number of trembling rounds of each way.
     #[arg(long, default_value_t = 2)]
     shakes: u64,
-    /// Plays only the way with this number, and prints its progress each second.
+    /// Plays only the way with this number, and prints its progress each half second.
     #[arg(long)]
     way: Option<usize>,
     /// Folder for replays.
@@ -82,7 +81,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Prints the progress of a way each second.
+/// Prints the progress of a way each half second.
 fn watch(level: &Arc<Level>, way: &tamaire_play::Way) {
     let mut round = AnyRound::new(level.clone());
     for tick in 0..((way.seconds() + 4.0) * 60.0) as u64 {
@@ -112,9 +111,7 @@ fn told(level: &Level, round: &AnyRound, outcome: Option<Outcome>) -> String {
             progress.within, progress.inside, progress.kept, progress.pieces
         ),
         Some(won) => {
-            let wishes = level.game().wish.iter().enumerate();
-            let wishes = wishes.filter(|(_, wish)| won.fulfils(wish));
-            let wishes: Vec<usize> = wishes.map(|(index, _)| index + 1).collect();
+            let wishes = won.wishes(level.game());
             format!(
                 "won after {:.1} s, {:?}, kept {:.2}, in {:.2}, {} pieces, {} lost, wishes {wishes:?}",
                 won.seconds(),
@@ -141,19 +138,8 @@ fn straight(
             let play = |seed: u64| {
                 let mut round = AnyRound::new(level.clone());
                 let mut bot = StraightPush::new(chases, speed, seed);
-                let mut most = 0.0_f32;
-                for _ in 0..MINUTE {
-                    let frame = match &round {
-                        AnyRound::Plane(round) => bot.frame(round),
-                        AnyRound::Space(round) => bot.frame(round),
-                    };
-                    round.step(frame);
-                    most = most.max(round.progress().inside);
-                    if round.progress().outcome.is_some() {
-                        break;
-                    }
-                }
-                (round, most)
+                round.push_straight(&mut bot, MINUTE);
+                round
             };
             let rounds = thread::scope(|scope| {
                 let half = |first: u64| {
@@ -166,14 +152,9 @@ fn straight(
             let rounds: Vec<_> = rounds.into_iter().flatten().collect();
             let won = rounds
                 .iter()
-                .filter(|(round, _)| round.progress().outcome.is_some());
-            let most =
-                rounds.iter().map(|(_, most)| most).sum::<f32>() / rounds.len().max(1) as f32;
-            println!(
-                "{name} at {speed} m/s: won {} of {starts}, greatest share {most:.2} in the mean",
-                won.count()
-            );
-            if let Some((round, _)) = rounds.first() {
+                .filter(|round| round.progress().outcome.is_some());
+            println!("{name} at {speed} m/s: won {} of {starts}", won.count());
+            if let Some(round) = rounds.first() {
                 save(format!("{name}-{speed}.tamaire"), round)?;
             }
         }

@@ -121,6 +121,21 @@ impl AnyRound {
         }
     }
 
+    /// Lets a straight bot play until it wins, for at most `ticks` ticks. Returns the outcome if it won.
+    pub fn push_straight(&mut self, bot: &mut StraightPush, ticks: usize) -> Option<Outcome> {
+        for _ in 0..ticks {
+            let frame = match self {
+                Self::Plane(round) => bot.frame(round),
+                Self::Space(round) => bot.frame(round),
+            };
+            self.step(frame);
+            if self.progress().outcome.is_some() {
+                break;
+            }
+        }
+        self.progress().outcome
+    }
+
     /// Lets a bot play until it wins, for at most `ticks` ticks. Returns the outcome if it won.
     pub fn play(&mut self, bot: &mut Bot, ticks: usize) -> Option<Outcome> {
         for _ in 0..ticks {

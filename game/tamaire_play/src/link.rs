@@ -44,13 +44,13 @@ pub use pasted::is_link;
 use crate::level::{hash_of, stem};
 use crate::replay::{MAX_BYTES, MAX_NAME, VERSION};
 use crate::round::MAX_TICKS;
-use crate::{Level, Outcome, Replay, ReplayError};
+use crate::{Level, Outcome, Replay, ReplayError, Route};
 use base64::Engine;
 use base64::prelude::BASE64_URL_SAFE_NO_PAD as BASE64;
 use error::{all, taken};
 use fuwafuwa::inspect::Hash;
 use level::SentLevel;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Digit in a fragment that stands for bytes in base64url.
 const FORMAT: char = '1';
@@ -121,7 +121,7 @@ impl Replay {
     /// # Errors
     /// [`LinkError`] if reading the fragment would fail.
     pub fn fragment(&self) -> Result<String, LinkError> {
-        Ok(packed(ROUND, &(VERSION, self.sent()?)))
+        Ok(packed(ROUND, &self.sent()?))
     }
 
     /// Returns the replay as a fragment in decimal digits. Digits take less space than base64 in a QR code,
@@ -130,16 +130,13 @@ impl Replay {
     /// # Errors
     /// As [`Replay::link`].
     pub fn code(&self) -> Result<String, LinkError> {
-        let sent = (VERSION, self.sent()?);
-        let code = format!(
-            "{ROUND}{DIGITS}{}{END}",
-            digits::write(&sealed(ROUND, &sent))
-        );
+        let sent = sealed(ROUND, &self.sent()?);
+        let code = format!("{ROUND}{DIGITS}{}{END}", digits::write(&sent));
         check_length(code.len())?;
         Ok(code)
     }
 
-    fn sent(&self) -> Result<SentRound, LinkError> {
+    fn sent(&self) -> Result<(u32, SentRound, BrokenJoints), LinkError> {
         self.check()?;
         if self.version != VERSION {
             let found = self.version;
@@ -149,14 +146,17 @@ impl Replay {
             return Err(ReplayError::LevelChanged.into());
         }
         let played: Vec<_> = (0..self.ticks()).map(|tick| self.frame(tick)).collect();
-        Ok(SentRound {
+        let outcome = self.stored_outcome();
+        let broken = BrokenJoints(outcome.map_or(0, |outcome| outcome.broken));
+        let sent = SentRound {
             game: self.game.clone(),
             level: SentLevel::of(&self.level, &self.scene)?,
-            outcome: self.stored_outcome(),
+            outcome: outcome.map(SentOutcome::from),
             hashes: self.hashes.iter().map(|hash| last_digits(hash)).collect(),
             ticks: self.ticks() as u32,
             frames: frames::write(&played),
-        })
+        };
+        Ok((VERSION, sent, broken))
     }
 
     /// Reads a round from a fragment made by [`Replay::fragment`].
@@ -196,17 +196,86 @@ pub fn address(page: &str, fragment: &str) -> String {
     format!("{page}#{fragment}")
 }
 
-/// Content of a link to a round. In the encoded bytes, the version of the rules stands before it.
+/// Content of a link to a round. In the encoded bytes, the version of the rules stands before it, and
+/// [`BrokenJoints`] after it.
 #[derive(Debug, Serialize, Deserialize)]
 struct SentRound {
     game: String,
     level: SentLevel,
     /// As [`Replay::stored_outcome`].
-    outcome: Option<Outcome>,
+    outcome: Option<SentOutcome>,
     /// The last four hexadecimal digits of each hash.
     hashes: Vec<[u8; 2]>,
     ticks: u32,
     frames: Vec<u8>,
+}
+
+/// An [`Outcome`] without its number of broken joints.
+#[derive(Debug, Serialize, Deserialize)]
+struct SentOutcome {
+    ticks: u64,
+    route: Route,
+    kept: f32,
+    inside: f32,
+    pieces: usize,
+    lost: usize,
+}
+
+impl From<Outcome> for SentOutcome {
+    fn from(outcome: Outcome) -> Self {
+        let Outcome {
+            ticks,
+            route,
+            kept,
+            inside,
+            pieces,
+            lost,
+            broken: _,
+        } = outcome;
+        Self {
+            ticks,
+            route,
+            kept,
+            inside,
+            pieces,
+            lost,
+        }
+    }
+}
+
+impl SentOutcome {
+    fn with_broken(self, broken: usize) -> Outcome {
+        let Self {
+            ticks,
+            route,
+            kept,
+            inside,
+            pieces,
+            lost,
+        } = self;
+        Outcome {
+            ticks,
+            route,
+            kept,
+            inside,
+            pieces,
+            lost,
+            broken,
+        }
+    }
+}
+
+/// Number of joints that broke. Zero takes no space, so that links to
+/// rounds in which no joint broke stay as they were.
+struct BrokenJoints(usize);
+
+impl Serialize for BrokenJoints {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0 {
+            0 => serializer.serialize_unit(),
+            broken => serializer.serialize_u64(broken as u64),
+        }
+    }
 }
 
 impl SentRound {
@@ -218,7 +287,15 @@ impl SentRound {
         if version < VERSION {
             return Err(ReplayError::Version { found: version }.into());
         }
-        let sent: Self = all(bytes)?;
+        let (sent, rest): (Self, &[u8]) = taken(bytes)?;
+        let broken = match (rest, &sent.outcome) {
+            ([], _) => 0,
+            (_, None) => return Err(LinkError::Damaged),
+            (rest, Some(_)) => match usize::try_from(all::<u64>(rest)?) {
+                Ok(0) | Err(_) => return Err(LinkError::Damaged),
+                Ok(broken) => broken,
+            },
+        };
         let ticks = sent.ticks as usize;
         if ticks > MAX_TICKS {
             return Err(LinkError::Damaged);
@@ -231,7 +308,7 @@ impl SentRound {
             game: sent.game,
             level: sent.level.id,
             level_hash: format!("{:016x}", hash_of(&scene)),
-            outcome: sent.outcome,
+            outcome: sent.outcome.map(|outcome| outcome.with_broken(broken)),
             hashes: sent.hashes.iter().map(digits).collect(),
             frames: played.iter().map(|frame| frame.row()).collect(),
             scene,

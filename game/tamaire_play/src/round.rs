@@ -2,8 +2,8 @@
 
 use crate::{InputFrame, Level, PLAYERS, Progress};
 use fuwafuwa::{
-    DEFAULT_TICK, Dim, Dim3, DimAngular, DimVector, Reaction, RigidBody, RigidBodyHandle,
-    RigidBodyRef, Shape, SoftBody, StepReport, Vec3, World,
+    DEFAULT_TICK, Dim, Dim3, DimAngular, DimVector, JointAnchor, JointHandle, Reaction, RigidBody,
+    RigidBodyHandle, RigidBodyRef, Shape, SoftBody, StepReport, Vec3, World,
 };
 use fuwafuwa_scenes::Scene;
 use std::sync::Arc;
@@ -82,8 +82,12 @@ impl<D: Dim> Round<D> {
         let hands = bodies.filter(|(_, body)| body.follows_target());
         let (hands, starts): (Vec<RigidBodyHandle>, Vec<RigidBody<D>>) =
             hands.map(|(hand, body)| (hand, body.definition())).unzip();
-        // Removes all hands except the first. They return when their players join.
+        // Removes all hands except the first, with their joints. The hands return when their players join, the
+        // joints do not.
         for &hand in hands.iter().skip(1) {
+            for joint in joints_of(&world, hand) {
+                world.remove(joint).expect("the world has this joint");
+            }
             world.remove(hand).expect("the world has this hand");
         }
         Self {
@@ -244,6 +248,17 @@ impl<D: Dim> Round<D> {
         let goal = near(target, goal, TOP_SPEED * DEFAULT_TICK);
         near(hand.position().to_vec3(), goal, LEASH)
     }
+}
+
+/// Returns the joints of a rigid body.
+fn joints_of<D: Dim>(world: &World<D>, rigid: RigidBodyHandle) -> Vec<JointHandle> {
+    let is_on = |anchor: JointAnchor<D>| match anchor {
+        JointAnchor::RigidBody { body, .. } => body == rigid,
+        _ => false,
+    };
+    let joints = world.joints();
+    let joints = joints.filter(|(_, joint)| joint.definition().anchors.into_iter().any(is_on));
+    joints.map(|(joint, _)| joint).collect()
 }
 
 /// Returns the targets of all hands of a level at the start [m]. In 2D the third coordinate is zero.

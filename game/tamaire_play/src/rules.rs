@@ -36,8 +36,8 @@ pub struct Progress {
     pub kept: f32,
     /// Number of pieces.
     pub pieces: usize,
-    /// Time for which enough mass has rested in the basket, and no hand has touched it if the level demands
-    /// that [s].
+    /// Time for which the basket has counted as full [s]. If the level has `alone`, a hand that touches the content
+    /// resets it.
     pub held: f32,
     /// Whether a hand touches a piece in the basket.
     pub touched: bool,
@@ -89,6 +89,13 @@ impl Outcome {
     /// Returns the duration of the round from the first input that moved a hand [s].
     pub fn seconds(&self) -> f32 {
         self.ticks as f32 * DEFAULT_TICK
+    }
+
+    /// Returns the numbers of the level's wishes that the outcome meets, counted from 1.
+    pub fn wishes(&self, rules: &GameText) -> Vec<usize> {
+        let wishes = rules.wish.iter().zip(1..);
+        let met = wishes.filter(|(wish, _)| self.fulfils(wish));
+        met.map(|(_, number)| number).collect()
     }
 
     /// Returns whether the outcome meets a wish of the level.

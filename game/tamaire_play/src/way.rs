@@ -1,5 +1,4 @@
-//! Ways to win a level: input that each built-in level of the path ships, to prove that it can be won in different
-//! ways and to show how.
+//! Ways to win a level: paths of the hand. Each level of the path has at least two, and tests play them.
 
 use crate::{AnyRound, InputFrame, Outcome, Route};
 use fuwafuwa::{DEFAULT_TICK, Vec3};
@@ -57,7 +56,8 @@ impl Way {
 
     /// Returns the duration of the way [s].
     pub fn seconds(&self) -> f32 {
-        self.path.last().map_or(0.0, |point| point[0])
+        let ends = [&self.path, &self.second].map(|path| path.last().map_or(0.0, |end| end[0]));
+        ends[0].max(ends[1])
     }
 
     /// Plays the way in a round from its start. Returns the outcome if it wins within 8 s after the end of the way.

@@ -17,7 +17,7 @@ use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use png::{BitDepth, ColorType};
 use std::io::{Cursor, Write};
 use std::sync::Arc;
-use tamaire_play::level::{NAMED, NAMED_3D};
+use tamaire_play::level::built_in;
 use tamaire_play::{AnyRound, InputFrame, Level, Replay};
 
 pub const CAT: &[u8] = include_bytes!("../../../game/tamaire_play/levels/cat.png");
@@ -242,7 +242,7 @@ fn small_scenes() -> Vec<Scene> {
 
 /// Returns the built-in levels, with small bodies where the size can be chosen.
 pub fn small_levels() -> Vec<Level> {
-    let small = |(id, text): &(&str, &str)| {
+    let small = |(id, text): (&str, &str)| {
         let level = Level::open(id).expect("a built-in scene or level");
         if level.scene().body[0].file.is_some() {
             return level;
@@ -251,7 +251,7 @@ pub fn small_levels() -> Vec<Level> {
         Level::from_scene(id, scene.expect("a built-in scene or level"))
             .expect("a smaller body is valid")
     };
-    NAMED.iter().chain(&NAMED_3D).map(small).collect()
+    built_in().map(small).collect()
 }
 
 fn text_of(scene: &Scene) -> Vec<u8> {

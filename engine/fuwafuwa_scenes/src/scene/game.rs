@@ -24,7 +24,8 @@ pub struct GameText {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub alone: bool,
     /// Numbers of the bodies that have to rest in the basket, counted from 1. If empty, all bodies. The others are
-    /// tools or furniture: goals ignore them.
+    /// tools or furniture: their mass and pieces do not count, and a hand may touch them. Goals about joints count all
+    /// joints.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<usize>,
     /// Routes by which the level can be won. If empty, all routes that its materials allow.
@@ -34,7 +35,7 @@ pub struct GameText {
     /// recorded round; in a level file they have no effect.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub assists: BTreeSet<AssistText>,
-    /// Aids that would make the level impossible, so that it ignores them.
+    /// Aids that the level ignores, because it could not be won with them.
     #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
     pub ignored_assists: BTreeSet<AssistText>,
     /// Optional goals of the level.
@@ -121,7 +122,7 @@ impl GameText {
         self.basket.as_ref().map(shape).transpose()
     }
 
-    /// Checks every field. The scene has `bodies` bodies and `joints` joints.
+    /// Checks every field. The scene has `bodies` bodies and `joints` joints that can break.
     pub(super) fn check<D: Dim>(&self, bodies: usize, joints: usize) -> Result<(), FieldError> {
         self.basket::<D>()?;
         for (index, &number) in self.bodies.iter().enumerate() {
@@ -144,6 +145,8 @@ impl GameText {
         require(good, "share", expected("above 0, up to 1", self.share))?;
         let good = (0.0..=60.0).contains(&self.hold);
         require(good, "hold", expected("0 to 60 s", self.hold))?;
+        let good = !self.alone || self.hold > 0.0;
+        require(good, "hold", "expected more than 0 s with alone = true")?;
         let count = self.wish.len();
         let most = format!("expected {MAX_WISHES} at most, found {count}");
         require(count <= MAX_WISHES, "wish", most)?;
@@ -156,11 +159,14 @@ impl GameText {
             let good = (0.0..=1.0).contains(&kept);
             require(good, "kept", expected("0 to 1", kept)).map_err(inside)?;
             let [least, most] = [wish.pieces, wish.max_pieces];
-            let good = most.is_none_or(|most| most >= least.unwrap_or(1));
-            let expected = "expected at least 1, and not less than pieces";
+            let least = least.unwrap_or(1).max(1);
+            let good = most.is_none_or(|most| most >= least);
+            let found = most.unwrap_or_default();
+            let expected = format!("expected at least {least}, found {found}");
             require(good, "max_pieces", expected).map_err(inside)?;
             let good = joints > 0 || wish.joints.is_none();
-            require(good, "joints", "expected a level with joints").map_err(inside)?;
+            let expected = "expected a joint with a breaking_force in the level";
+            require(good, "joints", expected).map_err(inside)?;
             let given = wish != &WishText::default();
             let expected =
                 "expected at least one of seconds, kept, pieces, max_pieces, joints and route";

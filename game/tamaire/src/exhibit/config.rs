@@ -368,7 +368,7 @@ mod tests {
                 "levels = [\"classic\"]",
                 "levels = [\"mine.toml\"]",
                 "a built-in level (classic, gravity, neck, twins, core, donut, cat, rubber, biscuit, sandbox, classic-3d, \
-                 hoop, pudding, sandbox-3d), found \"mine.toml\"",
+                 hoop, pudding, sandbox-3d, under-the-table, ring-and-peg, walk-the-dog, make-a-nest), found \"mine.toml\"",
             ),
             (
                 "levels = [\"classic\"]",

@@ -63,8 +63,7 @@ fn draw_way(
     look: &DrawOptions,
 ) {
     let (view, strength) = (&look.view, look.effects.hint);
-    let (Some(goal), Some((_, body))) = (basket_centre(round), round.world().soft_bodies().next())
-    else {
+    let (Some(goal), Some(body)) = (basket_centre(round), round.counted_bodies().next()) else {
         return;
     };
     let Some(piece) = body.piece_views().into_iter().next() else {

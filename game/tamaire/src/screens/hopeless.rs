@@ -88,7 +88,7 @@ fn share_left<D: Dim>(round: &Round<D>) -> f32 {
     let is_in_basket = |at| {
         { round.basket() }.is_some_and(|basket| basket.distance(D::Vector::from_vec3(at)).0 <= 0.0)
     };
-    let pieces = { round.world().soft_bodies() }.flat_map(|(_, body)| body.piece_views());
+    let pieces = { round.counted_bodies() }.flat_map(|body| body.piece_views());
     let left = pieces.filter(|piece| {
         is_in_basket(piece.centre) || !piece.quarantined && !is_lost(round, piece.centre)
     });

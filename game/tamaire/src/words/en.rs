@@ -45,10 +45,10 @@ pub(super) const WORDS: Words = Words {
         );
         parts.extend(match (wish.pieces, wish.max_pieces) {
             (None, None) => None,
+            (_, Some(1)) => Some("in one piece".into()),
             (Some(least), None) => Some(format!("at least {least} pieces")),
             (Some(least), Some(most)) if least == most => Some(format!("exactly {least} pieces")),
             (Some(least), Some(most)) => Some(format!("{least} to {most} pieces")),
-            (None, Some(1)) => Some("in one piece".into()),
             (None, Some(most)) => Some(format!("at most {most} pieces")),
         });
         parts.extend(wish.joints.map(|joints| match joints {
@@ -281,10 +281,10 @@ pub(super) const WORDS: Words = Words {
         );
         parts.extend(match (wish.pieces, wish.max_pieces) {
             (None, None) => None,
+            (_, Some(1)) => Some("one piece".into()),
             (Some(least), None) => Some(format!("{least} pieces")),
             (Some(least), Some(most)) if least == most => Some(format!("= {least} pieces")),
             (Some(least), Some(most)) => Some(format!("{least} to {most} pieces")),
-            (None, Some(1)) => Some("one piece".into()),
             (None, Some(most)) => Some(format!("≤ {most} pieces")),
         });
         parts.extend(wish.joints.map(|joints| match joints {

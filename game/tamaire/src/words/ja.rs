@@ -47,10 +47,10 @@ pub(super) const WORDS: Words = Words {
         );
         parts.extend(match (wish.pieces, wish.max_pieces) {
             (None, None) => None,
+            (_, Some(1)) => Some("ちぎらない".into()),
             (Some(least), None) => Some(format!("{least}こ以上にわける")),
             (Some(least), Some(most)) if least == most => Some(format!("ちょうど{least}こ")),
             (Some(least), Some(most)) => Some(format!("{least}こから{most}こまで")),
-            (None, Some(1)) => Some("ちぎらない".into()),
             (None, Some(most)) => Some(format!("{most}こまで")),
         });
         parts.extend(wish.joints.map(|joints| match joints {
@@ -285,10 +285,10 @@ pub(super) const WORDS: Words = Words {
         );
         parts.extend(match (wish.pieces, wish.max_pieces) {
             (None, None) => None,
+            (_, Some(1)) => Some("ちぎらない".into()),
             (Some(least), None) => Some(format!("{least}こ")),
             (Some(least), Some(most)) if least == most => Some(format!("{least}こちょうど")),
             (Some(least), Some(most)) => Some(format!("{least}〜{most}こ")),
-            (None, Some(1)) => Some("ちぎらない".into()),
             (None, Some(most)) => Some(format!("{most}こまで")),
         });
         parts.extend(wish.joints.map(|joints| match joints {

@@ -89,9 +89,8 @@ impl Sight {
         });
 
         let mass = round.progress().mass;
-        let bodies = world.soft_bodies();
-        let views = bodies.clone().flat_map(|(_, body)| body.piece_views());
-        let mut views: Vec<PieceView> = views.collect();
+        let counted = round.counted_bodies();
+        let mut views: Vec<PieceView> = counted.flat_map(|body| body.piece_views()).collect();
         views.sort_by(|a, b| b.mass.total_cmp(&a.mass));
         let largest = views.first()?;
         let is_out = |view: &&PieceView| view.mass > CRUMB * mass && !basket.holds(view);
@@ -108,16 +107,13 @@ impl Sight {
         pieces.sort_by_key(|piece| clearance(piece.behind, obstacles) < 0.5 * radius);
         let piece = pieces[skips % pieces.len()];
 
-        let mut within = 0.0;
-        for (_, body) in bodies {
+        for (_, body) in world.soft_bodies() {
             for (id, _) in body.mesh().nodes() {
                 let (at, _, share) = body.node_state(id);
                 map.add(at.to_vec3(), SOFT * share / mass);
-                if region.distance(at).0 < 0.0 {
-                    within += share / mass;
-                }
             }
         }
+        let within = round.progress().within;
         let out = basket.mouth - basket.axis * 4.0;
         Some(Self {
             axis: basket.axis,
@@ -280,7 +276,7 @@ pub(super) fn clearance<D: Dim>(at: Vec3, obstacles: &[Shape<D>]) -> f32 {
 }
 
 /// Returns the position nearest to `place` that is in the room and at least `margin` [m] from its walls.
-fn clamped(place: Vec3, [low, high]: [Vec3; 2], margin: f32) -> Vec3 {
+pub(super) fn clamped(place: Vec3, [low, high]: [Vec3; 2], margin: f32) -> Vec3 {
     let margin = Vec3::splat(margin).min((high - low) * 0.5);
     place.clamp(low + margin, high - margin)
 }

@@ -1,7 +1,7 @@
 //! Bots that only push straight. A level is too simple if one of them wins it.
 
 use super::map::Map;
-use super::sight::{clearance, unit};
+use super::sight::{clamped, clearance, unit};
 use crate::{InputFrame, Round};
 use fuwafuwa::{DEFAULT_TICK, Dim, DimVector, MotionType, PieceView, Shape, Vec3};
 
@@ -9,7 +9,7 @@ use fuwafuwa::{DEFAULT_TICK, Dim, DimVector, MotionType, PieceView, Shape, Vec3}
 const BRISK: f32 = 3.0;
 /// Cost of a step through a cell with an obstacle or a body, relative to a free cell.
 const OBSTACLE: f32 = 1000.0;
-/// Distance from the start of a push at which the push begins [m].
+/// Distance from the start of a push at which the push begins, and from its end at which it ends [m].
 const NEAR: f32 = 0.08;
 /// Maximum time of one way to the start of a push [ticks]. Then the push begins wherever the hand is.
 const PATIENCE: u32 = 240;
@@ -18,12 +18,14 @@ const PRESS: u32 = 90;
 /// Time for which the hand is drawn back after a push [ticks].
 const REST: u32 = 90;
 
-/// Bot that goes behind the body and pushes it straight towards the basket, draws back, and does so again.
+/// Bot that goes behind the body, pushes it straight towards the basket, draws back, and pushes again.
 #[derive(Clone, Debug)]
 pub struct StraightPush {
-    /// Whether the bot aims again in each tick, at the largest piece outside the basket. Otherwise it keeps the
-    /// line on which a push began.
+    /// Whether the bot aims again in each tick, at the largest piece outside the basket. Otherwise all pushes are on
+    /// the line of the first one.
     chases: bool,
+    /// Start [m] and direction of the first push.
+    line: Option<[Vec3; 2]>,
     /// Speed of the pushing hand [m/s].
     speed: f32,
     /// Offset of the line of the push across the body, from −1 to 1, as a share of half the body's width.
@@ -36,8 +38,8 @@ pub struct StraightPush {
 enum Stage {
     /// On the way to the start of the push.
     Reach(u32),
-    /// Pushing along a direction.
-    Push(Vec3, u32),
+    /// Pushing along the line through a point, in a direction.
+    Push([Vec3; 2], u32),
     /// Drawing back against the direction of the push.
     Rest(Vec3, u32),
 }
@@ -49,6 +51,7 @@ impl StraightPush {
         let mut random = fastrand::Rng::with_seed(seed);
         Self {
             chases,
+            line: None,
             speed,
             offset: (2.0 * random.f32() - 1.0) / 3.0,
             stage: Stage::Reach(0),
@@ -82,29 +85,37 @@ impl StraightPush {
             let reach = (way * half).length() + 1.1 * radius;
             aim.centre + across * (self.offset * width) - way * reach
         };
-        let end = |way: Vec3| nest + way * (0.5 * (high - low).length());
+        let arena = round.level().arena();
+        let deep = nest + towards * (0.5 * (high - low).length());
         let (stage, target) = match self.stage {
             Stage::Reach(ticks) => {
-                let place = start(towards);
+                let aimed = [start(towards), towards];
+                let line = match self.chases {
+                    true => aimed,
+                    false => *self.line.get_or_insert(aimed),
+                };
+                let place = line[0];
                 let is_there = (hand - place).length() < NEAR || ticks > PATIENCE;
                 let stage = match is_there {
-                    true => Stage::Push(towards, 0),
+                    true => Stage::Push(line, 0),
                     false => Stage::Reach(ticks + 1),
                 };
                 let next = map_of(round, radius).next(hand, place);
                 (stage, step(goal, next, BRISK))
             }
-            Stage::Push(way, ticks) => {
-                let way = if self.chases { towards } else { way };
-                let is_done = (goal - end(way)).length() < NEAR || ticks > 4 * PATIENCE;
-                let stage = match is_done && ticks > PRESS {
-                    true => Stage::Rest(way, 0),
-                    false => Stage::Push(way, ticks + 1),
+            Stage::Push(line, ticks) => {
+                let [from, way] = match self.chases {
+                    true => [start(towards), towards],
+                    false => line,
                 };
-                // Keeps on the line of the push, which the hand may have been pressed off.
-                let aside = (start(way) - goal) - way * (start(way) - goal).dot(way);
-                let line = if self.chases { aside } else { Vec3::ZERO };
-                (stage, step(goal, end(way) + line, self.speed))
+                // As deep as the far end of the basket, or as the room allows.
+                let end = clamped(from + way * (deep - from).dot(way), arena, radius);
+                let is_done = (goal - end).length() < NEAR && ticks > PRESS;
+                let stage = match is_done || ticks > 4 * PATIENCE {
+                    true => Stage::Rest(way, 0),
+                    false => Stage::Push([from, way], ticks + 1),
+                };
+                (stage, step(goal, end, self.speed))
             }
             Stage::Rest(way, ticks) => {
                 let stage = match ticks > REST {
