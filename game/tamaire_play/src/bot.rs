@@ -123,23 +123,26 @@ impl AnyRound {
 
     /// Lets a straight bot play until it wins, for at most `ticks` ticks. Returns the outcome if it won.
     pub fn push_straight(&mut self, bot: &mut StraightPush, ticks: usize) -> Option<Outcome> {
-        for _ in 0..ticks {
-            let frame = match self {
-                Self::Plane(round) => bot.frame(round),
-                Self::Space(round) => bot.frame(round),
-            };
-            self.step(frame);
-            if self.progress().outcome.is_some() {
-                break;
-            }
-        }
-        self.progress().outcome
+        let ask = |round: &Self| match round {
+            Self::Plane(round) => bot.frame(round),
+            Self::Space(round) => bot.frame(round),
+        };
+        self.play_with(ticks, ask)
     }
 
     /// Lets a bot play until it wins, for at most `ticks` ticks. Returns the outcome if it won.
     pub fn play(&mut self, bot: &mut Bot, ticks: usize) -> Option<Outcome> {
+        self.play_with(ticks, |round| round.ask(bot))
+    }
+
+    /// Plays with the input from `ask` until the round is won, for at most `ticks` ticks.
+    fn play_with(
+        &mut self,
+        ticks: usize,
+        mut ask: impl FnMut(&Self) -> InputFrame,
+    ) -> Option<Outcome> {
         for _ in 0..ticks {
-            let frame = self.ask(bot);
+            let frame = ask(self);
             self.step(frame);
             if self.progress().outcome.is_some() {
                 break;
@@ -338,7 +341,11 @@ impl Bot {
 
 /// Returns the next target on the straight line to a position, at the speed `pace` [m/s].
 fn straight(sight: &Sight, place: Vec3, pace: f32) -> Vec3 {
-    let way = place - sight.goal;
-    let step = (pace * DEFAULT_TICK / way.length().max(1e-6)).min(1.0);
-    sight.goal + way * step
+    step(sight.goal, place, pace)
+}
+
+/// Returns the next position on the straight line from one position to another, at the speed `pace` [m/s].
+fn step(from: Vec3, to: Vec3, pace: f32) -> Vec3 {
+    let way = to - from;
+    from + way * (pace * DEFAULT_TICK / way.length().max(1e-6)).min(1.0)
 }

@@ -151,7 +151,11 @@ impl Replay {
         let sent = SentRound {
             game: self.game.clone(),
             level: SentLevel::of(&self.level, &self.scene)?,
-            outcome: outcome.map(SentOutcome::from),
+            outcome: outcome.map(|won| {
+                (
+                    won.ticks, won.route, won.kept, won.inside, won.pieces, won.lost,
+                )
+            }),
             hashes: self.hashes.iter().map(|hash| last_digits(hash)).collect(),
             ticks: self.ticks() as u32,
             frames: frames::write(&played),
@@ -210,60 +214,8 @@ struct SentRound {
     frames: Vec<u8>,
 }
 
-/// An [`Outcome`] without its number of broken joints.
-#[derive(Debug, Serialize, Deserialize)]
-struct SentOutcome {
-    ticks: u64,
-    route: Route,
-    kept: f32,
-    inside: f32,
-    pieces: usize,
-    lost: usize,
-}
-
-impl From<Outcome> for SentOutcome {
-    fn from(outcome: Outcome) -> Self {
-        let Outcome {
-            ticks,
-            route,
-            kept,
-            inside,
-            pieces,
-            lost,
-            broken: _,
-        } = outcome;
-        Self {
-            ticks,
-            route,
-            kept,
-            inside,
-            pieces,
-            lost,
-        }
-    }
-}
-
-impl SentOutcome {
-    fn with_broken(self, broken: usize) -> Outcome {
-        let Self {
-            ticks,
-            route,
-            kept,
-            inside,
-            pieces,
-            lost,
-        } = self;
-        Outcome {
-            ticks,
-            route,
-            kept,
-            inside,
-            pieces,
-            lost,
-            broken,
-        }
-    }
-}
+/// Fields of an [`Outcome`] in their order, without the number of broken joints.
+type SentOutcome = (u64, Route, f32, f32, usize, usize);
 
 /// Number of joints that broke. Zero takes no space, so that links to
 /// rounds in which no joint broke stay as they were.
@@ -308,7 +260,15 @@ impl SentRound {
             game: sent.game,
             level: sent.level.id,
             level_hash: format!("{:016x}", hash_of(&scene)),
-            outcome: sent.outcome.map(|outcome| outcome.with_broken(broken)),
+            outcome: { sent.outcome }.map(|(ticks, route, kept, inside, pieces, lost)| Outcome {
+                ticks,
+                route,
+                kept,
+                inside,
+                pieces,
+                lost,
+                broken,
+            }),
             hashes: sent.hashes.iter().map(digits).collect(),
             frames: played.iter().map(|frame| frame.row()).collect(),
             scene,

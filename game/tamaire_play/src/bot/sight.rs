@@ -76,17 +76,11 @@ impl Sight {
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
         let (world, arena) = (round.world(), round.level().arena());
         let region = round.basket()?;
-        let fixed = world.rigid_bodies().map(|(_, body)| body);
-        let fixed = fixed.filter(|body| body.motion_type() == MotionType::Fixed);
-        let obstacles: Vec<Shape<D>> = fixed.map(|body| body.shape()).collect();
-        let obstacles = obstacles.as_slice();
+        let obstacles = &obstacles_of(round)[..];
         let basket = Basket::of(region, obstacles)?;
         let hand = round.hands().next()?;
         let radius = hand.shape().inradius();
-        let mut map = Map::new::<D>(arena, |at| match clearance(at, obstacles) < 0.9 * radius {
-            true => RIGID,
-            false => 1.0,
-        });
+        let mut map = room_for(arena, obstacles, radius);
 
         let mass = round.progress().mass;
         let counted = round.counted_bodies();
@@ -268,8 +262,23 @@ fn across<D: Dim>(axis: Vec3) -> Vec3 {
     across
 }
 
+/// Returns the shapes of the fixed rigid bodies.
+pub(super) fn obstacles_of<D: Dim>(round: &Round<D>) -> Vec<Shape<D>> {
+    let fixed = round.world().rigid_bodies().map(|(_, body)| body);
+    let fixed = fixed.filter(|body| body.motion_type() == MotionType::Fixed);
+    fixed.map(|body| body.shape()).collect()
+}
+
+/// Returns a map of a room with obstacles for a hand of a radius [m].
+pub(super) fn room_for<D: Dim>(arena: [Vec3; 2], obstacles: &[Shape<D>], radius: f32) -> Map {
+    Map::new::<D>(arena, |at| match clearance(at, obstacles) < 0.9 * radius {
+        true => RIGID,
+        false => 1.0,
+    })
+}
+
 /// Returns the distance from a position to the nearest obstacle [m]; negative inside an obstacle.
-pub(super) fn clearance<D: Dim>(at: Vec3, obstacles: &[Shape<D>]) -> f32 {
+fn clearance<D: Dim>(at: Vec3, obstacles: &[Shape<D>]) -> f32 {
     let at = D::Vector::from_vec3(at);
     let distances = obstacles.iter().map(|shape| shape.distance(at).0);
     distances.fold(f32::INFINITY, f32::min)

@@ -1,14 +1,11 @@
 //! Bots that only push straight. A level is too simple if one of them wins it.
 
 use super::map::Map;
-use super::sight::{clamped, clearance, unit};
+use super::sight::{clamped, obstacles_of, room_for, unit};
+use super::{BRISK, step};
 use crate::{InputFrame, Round};
-use fuwafuwa::{DEFAULT_TICK, Dim, DimVector, MotionType, PieceView, Shape, Vec3};
+use fuwafuwa::{Dim, DimVector, PieceView, Shape, Vec3};
 
-/// Speed of the hand on the way to the start of a push [m/s].
-const BRISK: f32 = 3.0;
-/// Cost of a step through a cell with an obstacle or a body, relative to a free cell.
-const OBSTACLE: f32 = 1000.0;
 /// Distance from the start of a push at which the push begins, and from its end at which it ends [m].
 const NEAR: f32 = 0.08;
 /// Maximum time of one way to the start of a push [ticks]. Then the push begins wherever the hand is.
@@ -141,24 +138,11 @@ fn aim<D: Dim>(round: &Round<D>, basket: &Shape<D>) -> Option<PieceView> {
 
 /// Returns a map of the room for a hand of a radius [m], with its fixed obstacles and all bodies.
 fn map_of<D: Dim>(round: &Round<D>, radius: f32) -> Map {
-    let rigid = round.world().rigid_bodies().map(|(_, body)| body);
-    let fixed = rigid.filter(|body| body.motion_type() == MotionType::Fixed);
-    let obstacles: Vec<Shape<D>> = fixed.map(|body| body.shape()).collect();
-    let cost = |at| match clearance(at, &obstacles) < 0.9 * radius {
-        true => OBSTACLE,
-        false => 1.0,
-    };
-    let mut map = Map::new::<D>(round.level().arena(), cost);
+    let mut map = room_for(round.level().arena(), &obstacles_of(round), radius);
     for (_, body) in round.world().soft_bodies() {
         for (id, _) in body.mesh().nodes() {
             map.add(body.node_state(id).0.to_vec3(), 1.0);
         }
     }
     map
-}
-
-/// Returns the next target on the straight line from one position to another, at a speed [m/s].
-fn step(from: Vec3, to: Vec3, speed: f32) -> Vec3 {
-    let way = to - from;
-    from + way * (speed * DEFAULT_TICK / way.length().max(1e-6)).min(1.0)
 }
