@@ -2,10 +2,10 @@
 
 use crate::solid::Scene3d;
 use crate::{Painter, PaperPoint, PaperTransform, Role};
-use fuwafuwa::inspect::{faces, outline_slots};
+use fuwafuwa::inspect::{faces, hands, obstacles, outline_slots};
 use fuwafuwa::{
-    Dim, Dim2, Dim3, ElementId, ElementView, Facet, NodeId, Outline, PieceId, RigidBodyRef,
-    Rotation, Shape, SoftBody, Vec2, Vec3, World,
+    Dim, Dim2, Dim3, ElementId, ElementView, Facet, NodeId, Outline, PieceId, Rotation, Shape,
+    SoftBody, Vec2, Vec3, World,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,25 +25,13 @@ pub fn plane(painter: &mut Painter, frame: PaperTransform, world: &World<Dim2>, 
     for (_, body) in world.soft_bodies() {
         draw(painter, frame, body);
     }
-    for hand in hands(world) {
+    for (_, hand) in hands(world) {
         if let Shape::Ball { centre, radius } = hand.shape() {
             let radius = radius * frame.unit + 1.5;
             painter.dot(frame.spot(centre), radius, Role::Ink);
         }
         rigid(painter, frame, hand.shape(), Role::Hand);
     }
-}
-
-/// Fixed and dynamic rigid bodies except sensors.
-fn obstacles<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<'_, D>> {
-    let bodies = world.rigid_bodies().map(|(_, body)| body);
-    bodies.filter(|body| !body.follows_target() && !body.is_sensor())
-}
-
-/// Kinematic and coupled rigid bodies.
-fn hands<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<'_, D>> {
-    let bodies = world.rigid_bodies().map(|(_, body)| body);
-    bodies.filter(RigidBodyRef::follows_target)
 }
 
 /// Paints the elements of a 2D body, with torn edges in another colour.
@@ -134,7 +122,7 @@ pub fn space(solid: &mut Scene3d, world: &World<Dim3>, draw: DrawSpace) {
     for (_, body) in world.soft_bodies() {
         draw(solid, body);
     }
-    for hand in hands(world) {
+    for (_, hand) in hands(world) {
         solid_shape(solid, hand.shape(), Role::Hand);
     }
 }

@@ -61,11 +61,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             for (look_name, look, palette) in looks {
                 let frame = Frame {
                     look,
-                    basket: (name == "squeeze").then_some(Basket {
-                        region: Shape::cuboid(Vec2::new(0.45, 0.425))
-                            .translated(Vec2::new(1.75, 0.5)),
+                    baskets: Vec::from_iter((name == "squeeze").then_some(Basket {
+                        region:
+                            Shape::cuboid(Vec2::new(0.45, 0.425)).translated(Vec2::new(1.75, 0.5)),
                         fill: 0.0,
-                    }),
+                    })),
                     particles: &particles,
                     seconds: tick as f64 / 60.0,
                     ..Frame::new(camera, palette)

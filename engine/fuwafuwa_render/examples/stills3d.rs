@@ -172,9 +172,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let mut world: World<Dim3> = scene.build()?;
         let mut ages = Ages::default();
-        let basket = scene
-            .basket::<Dim3>()?
-            .map(|region| Basket { region, fill: 0.3 });
+        let baskets = scene.baskets::<Dim3>()?.into_iter();
+        let baskets: Vec<_> = baskets.map(|region| Basket { region, fill: 0.3 }).collect();
         for tick in 0..=moments.iter().copied().max().unwrap_or(0) {
             scene.set_hand_targets(&mut world, tick);
             world.step();
@@ -214,7 +213,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 };
                 let frame = Frame {
                     look,
-                    basket,
+                    baskets: baskets.clone(),
                     particles: &particles,
                     seconds: tick as f64 / 60.0,
                     ..Frame::new(camera, palette)

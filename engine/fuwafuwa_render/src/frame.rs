@@ -17,8 +17,8 @@ pub struct Frame<'a, C: DimCamera = Camera> {
     pub tints: Tints<'a, C::Dim>,
     /// View of the bodies: their skin or their elements.
     pub look: Look<'a>,
-    /// Target region of the game, if any.
-    pub basket: Option<Basket<C::Dim>>,
+    /// Target regions of the game.
+    pub baskets: Vec<Basket<C::Dim>>,
     /// Particles such as crumbs, dust and sparks.
     pub particles: &'a [Particle],
     /// Stickers: coloured patches on the skins of 3D bodies, for example eyes and a mouth. In 2D, the caller
@@ -84,7 +84,7 @@ impl<'a, C: DimCamera> Frame<'a, C> {
             palette,
             tints: Tints::default(),
             look: Look::Skin,
-            basket: None,
+            baskets: Vec::new(),
             particles: &[],
             stickers: &[],
             ghost: None,

@@ -40,9 +40,8 @@ impl Geometry {
         self.skin.clear();
         self.bodies.clear();
         self.elements.clear();
-        let basket = frame.basket.as_ref();
         self.rigid
-            .gather(world, frame.palette, basket, frame.particles);
+            .gather(world, frame.palette, &frame.baskets, frame.particles);
         let radii = world.soft_bodies().map(|(_, body)| radius(body));
         self.radius = radii.fold(0.0, f32::max);
         self.bounds = NOWHERE;

@@ -3,6 +3,7 @@
 use crate::frame::{Basket, Particle};
 use crate::palette::{Colour, Palette};
 use bytemuck::{Pod, Zeroable};
+use fuwafuwa::inspect::{hands, obstacles};
 use fuwafuwa::{Dim, Dim2, Layers, RigidBodyRef, Shape, World};
 use glam::Vec2;
 
@@ -60,7 +61,7 @@ impl RigidShapes {
         &mut self,
         world: &World<Dim2>,
         palette: &Palette,
-        basket: Option<&Basket<Dim2>>,
+        baskets: &[Basket<Dim2>],
         particles: &[Particle],
     ) {
         self.walls.clear();
@@ -79,12 +80,12 @@ impl RigidShapes {
         }
         self.walls.truncate(MAX_WALLS);
         self.bar_count = self.shapes.len() as u32;
-        for (player, hand) in hands(world).enumerate() {
+        for (player, hand) in hands(world) {
             let hand = instance(hand.shape(), palette.hand(player), player as f32);
             self.shapes.extend(hand);
         }
         self.hand_count = self.shapes.len() as u32 - self.bar_count;
-        if let Some(basket) = basket {
+        for basket in baskets {
             self.shapes
                 .extend(instance(basket.region, palette.basket, basket.fill));
         }
@@ -97,21 +98,9 @@ impl RigidShapes {
     }
 }
 
-/// Returns the fixed and dynamic rigid bodies of a world, except sensors.
-pub fn obstacles<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<'_, D>> {
-    let bodies = world.rigid_bodies().map(|(_, body)| body);
-    bodies.filter(|body| !body.follows_target() && !body.is_sensor())
-}
-
 /// Returns whether a rigid body is drawn as glass: bodies with the default layers pass through it.
 pub fn is_glass<D: Dim>(body: RigidBodyRef<'_, D>) -> bool {
     !body.layers().meet(Layers::default())
-}
-
-/// Returns the kinematic and coupled rigid bodies of a world, by player.
-pub fn hands<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<'_, D>> {
-    let bodies = world.rigid_bodies().map(|(_, body)| body);
-    bodies.filter(RigidBodyRef::follows_target)
 }
 
 /// Returns the rectangle instance of a bounded shape, or `None` for a half-space.
@@ -173,7 +162,7 @@ mod tests {
         };
         let mut rigid = RigidShapes::default();
         for _ in 0..2 {
-            rigid.gather(&world, &Palette::candy(), Some(&basket), &[dot]);
+            rigid.gather(&world, &Palette::candy(), &[basket], &[dot]);
         }
         assert_eq!(rigid.walls, [[0.0, 1.0, -2.0, 0.0]]);
         assert_eq!(

@@ -1,8 +1,9 @@
 //! Recordings: a scene with the targets of its hands at each tick, so that a run can be repeated and
 //! compared.
 
-use crate::scene::set_hand_targets;
-use crate::scene::{BodyText, MAX_SECONDS, Scene, SceneError, shortened};
+use crate::scene::{
+    BodyText, MAX_SECONDS, Machinery, Scene, SceneError, set_hand_targets, shortened,
+};
 use fuwafuwa::{Dim, World};
 use serde::{Deserialize, Serialize};
 
@@ -126,11 +127,12 @@ impl Recording {
         mut watch: impl FnMut(&World<D>),
     ) -> Result<Self, SceneError> {
         let mut world = scene.build::<D>()?;
+        let mut machinery = Machinery::new(scene, &world);
         let (mut targets, mut hashes) = (Vec::new(), Vec::new());
         for tick in 0..ticks {
             let now = scene.hand_targets(tick);
             set_hand_targets(&mut world, &now);
-            world.step();
+            machinery.step(&mut world);
             targets.push(now);
             if is_noted(tick as usize, ticks as usize) {
                 hashes.push(format!("{:016x}", world.hash()));
@@ -155,11 +157,12 @@ impl Recording {
         mut watch: impl FnMut(&World<D>),
     ) -> Result<Comparison, SceneError> {
         let mut world = self.scene.build::<D>()?;
+        let mut machinery = Machinery::new(&self.scene, &world);
         let mut hashes = self.hashes.iter();
         let mut differs_at = None;
         for (tick, targets) in self.targets.iter().enumerate() {
             set_hand_targets(&mut world, targets);
-            world.step();
+            machinery.step(&mut world);
             watch(&world);
             if is_noted(tick, self.targets.len()) {
                 let hash = format!("{:016x}", world.hash());

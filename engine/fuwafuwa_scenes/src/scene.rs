@@ -88,6 +88,7 @@ mod error;
 mod game;
 mod grid;
 mod joint;
+mod machinery;
 mod materials;
 mod rigid_body;
 mod shapes;
@@ -97,11 +98,18 @@ mod write;
 pub use body::{BodyText, Form, LayersText, MaterialText, PartText, VoxelsText, extension_of};
 pub use embed::Fetch;
 pub use error::{SceneError, shortened};
-pub use game::{AssistText, GameText, JointsText, LocalizedText, RouteText, WishText};
+pub use game::{
+    AssistText, BasketText, GameText, JointsText, LocalizedText, MAX_TOLD_BODIES, RouteText,
+    WishText,
+};
 pub use joint::{JointAnchorText, JointKindText, JointText};
+pub use machinery::{FieldText, Machinery, SwitchText, SwitchedBy};
 pub use rigid_body::{MotionTypeText, RigidBodyText};
 pub(crate) use shapes::set_hand_targets;
-pub use shapes::{BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText, point_at};
+pub use shapes::{
+    AxisText, BallText, BoxText, CapsuleText, HalfSpaceText, HandText, ObstacleText, RepeatText,
+    point_at,
+};
 
 use crate::import::ImportNote;
 use budget::Budget;
@@ -183,6 +191,12 @@ pub struct Scene {
     /// Joints between bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joint: Vec<JointText>,
+    /// Regions that move obstacles and open joints when something is in them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub switch: Vec<SwitchText>,
+    /// Fields of acceleration.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub field: Vec<FieldText>,
     /// Rules of the game, if the scene is a level.
     pub game: Option<GameText>,
     #[serde(skip)]
@@ -297,7 +311,8 @@ impl Scene {
             max_substeps: self.max_substeps,
             stiff_bodies: self.stiff_bodies.unwrap_or_default(),
             tick: self.tick,
-            sleep: self.sleep,
+            // A field does not act on a sleeping body.
+            sleep: self.sleep && self.field.is_empty(),
         };
         let world = World::new(settings);
         let mut world = world.map_err(|error| FieldError::engine("gravity", error))?;
@@ -317,6 +332,8 @@ impl Scene {
             ("hand", self.hand.len()),
             ("rigid_body", self.rigid_body.len()),
             ("joint", self.joint.len()),
+            ("switch", self.switch.len()),
+            ("field", self.field.len()),
         ];
         for (field, count) in counts {
             let expected = format!("expected {MAX_RIGID} at most, found {count}");
@@ -327,12 +344,25 @@ impl Scene {
             let added = text.add_to(&mut world, &materials, &mut budget);
             added.map_err(|wrong| wrong.inside("body", index))?;
         }
+        for (index, text) in self.switch.iter().enumerate() {
+            let checked = text.region::<D>();
+            checked.map_err(|wrong| wrong.inside("switch", index))?;
+        }
+        for (index, text) in self.field.iter().enumerate() {
+            let checked = text.field::<D>();
+            checked.map_err(|wrong| wrong.inside("field", index))?;
+        }
+        self.check_numbers()?;
         for (index, text) in self.obstacle.iter().enumerate() {
             let added = text.add_to(&mut world);
             added.map_err(|wrong| wrong.inside("obstacle", index))?;
         }
         for (index, text) in self.hand.iter().enumerate() {
-            let added = text.add_to(&mut world);
+            let player = text.follows.map(|leader| {
+                let before = self.hand.iter().take(leader - 1);
+                before.filter(|hand| hand.follows.is_none()).count()
+            });
+            let added = text.add_to(player, &mut world);
             added.map_err(|wrong| wrong.inside("hand", index))?;
         }
         for (index, text) in self.rigid_body.iter().enumerate() {
@@ -355,19 +385,56 @@ impl Scene {
         Ok(world)
     }
 
-    /// Returns the target region, if the scene is a level of the game with a basket.
+    /// Returns an error if a switch or a hand has a number that is not in its list.
+    fn check_numbers(&self) -> Result<(), FieldError> {
+        let in_list = |number: Option<usize>, count: usize, field: &'static str| {
+            let number = number.unwrap_or(1);
+            let expected = format!("expected 1 to {count}, found {number}");
+            require((1..=count.max(1)).contains(&number), field, expected)
+        };
+        let switches = self.switch.len();
+        let expected = "expected a [[switch]] in the scene";
+        for (index, text) in self.obstacle.iter().enumerate() {
+            let known = switches > 0 || text.switch.is_none();
+            let good = require(known, "switch", expected);
+            let good = good.and_then(|()| in_list(text.switch, switches, "switch"));
+            good.map_err(|wrong| wrong.inside("obstacle", index))?;
+        }
+        for (index, text) in self.joint.iter().enumerate() {
+            let known = switches > 0 || text.switch.is_none();
+            let good = require(known, "switch", expected);
+            let good = good.and_then(|()| in_list(text.switch, switches, "switch"));
+            good.map_err(|wrong| wrong.inside("joint", index))?;
+        }
+        for (index, text) in self.hand.iter().enumerate() {
+            let Some(leader) = text.follows else {
+                continue;
+            };
+            let leads = leader
+                .checked_sub(1)
+                .and_then(|leader| self.hand.get(leader));
+            let good = leads.is_some_and(|leader| leader.follows.is_none());
+            let expected =
+                format!("expected the number of a hand that follows no other one, found {leader}");
+            require(good, "follows", expected).map_err(|wrong| wrong.inside("hand", index))?;
+        }
+        Ok(())
+    }
+
+    /// Returns the target regions, if the scene is a level of the game with baskets, in the order of
+    /// [`GameText::all_baskets`].
     ///
     /// # Errors
     /// [`SceneError::Build`] names the field of `[game]` and what is wrong with it.
-    pub fn basket<D: Dim>(&self) -> Result<Option<Shape<D>>, SceneError> {
+    pub fn baskets<D: Dim>(&self) -> Result<Vec<Shape<D>>, SceneError> {
         let Some(game) = &self.game else {
-            return Ok(None);
+            return Ok(Vec::new());
         };
         let joints = self.joint.iter();
-        let joints = joints.filter(|joint| joint.breaking_force.is_some());
-        let checked = game.check::<D>(self.body.len(), joints.count());
-        let basket = checked.and_then(|()| game.basket::<D>());
-        basket.map_err(|wrong| self.origin.error(wrong.under("game")))
+        let joints =
+            joints.filter(|joint| joint.breaking_force.is_some() || joint.switch.is_some());
+        let baskets = game.check::<D>(self.body.len(), joints.count());
+        baskets.map_err(|wrong| self.origin.error(wrong.under("game")))
     }
 
     /// Embeds the files that the scene's bodies are made from, so that the scene is self-contained. A body
@@ -431,7 +498,20 @@ impl Scene {
             true => (tick + 1) as f32 / 60.0,
             false => (tick + 1) as f32 * self.tick,
         };
-        self.hand.iter().map(|hand| hand.target(seconds)).collect()
+        let target = |hand: &HandText| match hand.follows {
+            None => hand.target(seconds),
+            Some(leader) => {
+                let Some(leader) = leader
+                    .checked_sub(1)
+                    .and_then(|leader| self.hand.get(leader))
+                else {
+                    return hand.target(0.0);
+                };
+                let [now, start] = [seconds, 0.0].map(|seconds| leader.target(seconds));
+                hand.following([0, 1, 2].map(|axis: usize| now[axis] - start[axis]))
+            }
+        };
+        self.hand.iter().map(target).collect()
     }
 
     /// Sets the targets of the world's hands to their positions at the end of a tick.

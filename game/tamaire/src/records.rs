@@ -167,6 +167,7 @@ mod tests {
             pieces: 1,
             lost: 0,
             broken: 0,
+            torn: 0,
         }
     }
 

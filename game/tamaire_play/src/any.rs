@@ -43,9 +43,9 @@ impl AnyRound {
         both!(self, round => round.level())
     }
 
-    /// Returns whether the level has a basket; see [`Round::basket`].
+    /// Returns whether the level has a basket; see [`Round::baskets`].
     pub fn has_basket(&self) -> bool {
-        both!(self, round => round.basket().is_some())
+        both!(self, round => !round.baskets().is_empty())
     }
 
     /// See [`Round::distance_to_bodies`].

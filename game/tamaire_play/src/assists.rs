@@ -34,9 +34,7 @@ pub(crate) fn assisted(scene: &Scene, assists: &BTreeSet<Assist>) -> Scene {
     let mut scene = scene.clone();
     for &assist in assists {
         let game = scene.game.as_mut();
-        let applies = |game: &mut GameText| {
-            !game.ignored_assists.contains(&assist) && game.assists.insert(assist)
-        };
+        let applies = |game: &mut GameText| !game.ignores(assist) && game.assists.insert(assist);
         if !game.is_some_and(applies) {
             continue;
         }

@@ -7,9 +7,11 @@ mod room;
 pub use path::{PATH, PathLevel};
 
 use crate::Route;
+use crate::round::start_targets;
+use crate::rules::Basket;
 use frame::BodySize;
 use fuwafuwa::inspect::Hash;
-use fuwafuwa::{Dim, Dim2, Dim3, Shape, Vec3, VoxelGrid, World};
+use fuwafuwa::{Dim, Dim2, Dim3, Vec3, VoxelGrid, World};
 use fuwafuwa_scenes::import::FileType;
 use fuwafuwa_scenes::scene::{
     BodyText, Fetch, GameText, MAX_TEXT_BYTES, MotionTypeText, RigidBodyText, Scene, SceneError,
@@ -31,8 +33,8 @@ pub struct Level {
     start: Arc<OnceLock<Box<dyn Any + Send + Sync>>>,
 }
 
-/// World at the start, basket, and the tints of each body.
-type Start<D> = (World<D>, Option<Shape<D>>, Vec<Option<VoxelGrid<D>>>);
+/// World at the start, baskets, and the tints of each body.
+type Start<D> = (World<D>, Vec<Basket<D>>, Vec<Option<VoxelGrid<D>>>);
 
 impl PartialEq for Level {
     fn eq(&self, other: &Self) -> bool {
@@ -261,9 +263,12 @@ impl Level {
         };
         let game = scene.game.clone();
         let game = game.ok_or_else(|| missing("game", "expected a table [game] with a name"))?;
-        let hands = scene.hand.len();
+        let hands = start_targets(&scene).len();
         if !(1..=crate::PLAYERS).contains(&hands) {
-            let reason = format!("expected 1 or 2 tables [[hand]], found {hands}");
+            let reason = match scene.hand.iter().any(|hand| hand.follows.is_some()) {
+                true => format!("expected 1 or 2 tables [[hand]] without follows, found {hands}"),
+                false => format!("expected 1 or 2 tables [[hand]], found {hands}"),
+            };
             return Err(missing("hand", &reason));
         }
         if scene.body.is_empty() {
@@ -340,6 +345,16 @@ impl Level {
         self.scene.dim == 2 && !is_built_in && self.scene.body.get(body).is_some_and(is_file)
     }
 
+    /// Returns for how many players the level has hands.
+    pub fn players(&self) -> usize {
+        start_targets(&self.scene).len()
+    }
+
+    /// Returns whether the level has a basket. Without one it is a playground.
+    pub fn has_basket(&self) -> bool {
+        self.game.basket.is_some() || !self.game.baskets.is_empty()
+    }
+
     /// Returns the routes by which the level can be won. A level without a basket has none, and a level in
     /// which nothing tears has no shaving. If the level states routes, only these remain.
     pub fn routes(&self) -> &[Route] {
@@ -353,7 +368,7 @@ impl Level {
     fn possible_routes(&self) -> &'static [Route] {
         let materials = self.scene.materials();
         let can_tear = materials.iter().any(|m| m.strength.is_finite());
-        match (self.game.basket.is_some(), can_tear) {
+        match (self.has_basket(), can_tear) {
             (false, _) => &[],
             (true, false) => &[Route::Squeeze],
             (true, true) => &[Route::Squeeze, Route::Shave],
@@ -370,22 +385,22 @@ impl Level {
         hash_of(&self.scene)
     }
 
-    /// Returns a copy of the world at the start, and the basket.
-    pub(crate) fn build<D: Dim>(&self) -> (World<D>, Option<Shape<D>>) {
+    /// Returns a copy of the world at the start, and the baskets.
+    pub(crate) fn build<D: Dim>(&self) -> (World<D>, Vec<Basket<D>>) {
         let start = self.start::<D>();
-        let (world, basket, _) =
+        let (world, baskets, _) =
             start.expect("tests build built-in levels, from_scene other levels");
-        (world.clone(), *basket)
+        (world.clone(), baskets.clone())
     }
 
-    /// Returns the world at the start, the basket, and the tints. The world is built at the first call.
+    /// Returns the world at the start, the baskets, and the tints. The world is built at the first call.
     fn start<D: Dim>(&self) -> Result<&Start<D>, SceneError> {
         let known = match self.start.get() {
             Some(known) => known,
             None => {
                 let start: Start<D> = (
                     self.scene.build_within(most_solid::<D>(&self.scene))?,
-                    self.scene.basket::<D>()?,
+                    Basket::all(&self.game, self.scene.baskets::<D>()?),
                     self.scene.tint_grids::<D>()?,
                 );
                 self.start.get_or_init(|| Box::new(start))

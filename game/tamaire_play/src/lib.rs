@@ -63,5 +63,5 @@ pub use level::Level;
 pub use link::{Link, LinkError};
 pub use replay::{Playback, Replay, ReplayError};
 pub use round::{Hand, Round};
-pub use rules::{Outcome, Progress, WishState};
+pub use rules::{Basket, Outcome, Progress, WishState};
 pub use way::{Way, Ways};

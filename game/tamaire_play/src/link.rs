@@ -136,7 +136,7 @@ impl Replay {
         Ok(code)
     }
 
-    fn sent(&self) -> Result<(u32, SentRound, BrokenJoints), LinkError> {
+    fn sent(&self) -> Result<(u32, SentRound, Damage), LinkError> {
         self.check()?;
         if self.version != VERSION {
             let found = self.version;
@@ -147,7 +147,10 @@ impl Replay {
         }
         let played: Vec<_> = (0..self.ticks()).map(|tick| self.frame(tick)).collect();
         let outcome = self.stored_outcome();
-        let broken = BrokenJoints(outcome.map_or(0, |outcome| outcome.broken));
+        let damage = outcome.map_or(Damage::default(), |outcome| Damage {
+            broken: outcome.broken,
+            torn: outcome.torn,
+        });
         let sent = SentRound {
             game: self.game.clone(),
             level: SentLevel::of(&self.level, &self.scene)?,
@@ -160,7 +163,7 @@ impl Replay {
             ticks: self.ticks() as u32,
             frames: frames::write(&played),
         };
-        Ok((VERSION, sent, broken))
+        Ok((VERSION, sent, damage))
     }
 
     /// Reads a round from a fragment made by [`Replay::fragment`].
@@ -201,7 +204,7 @@ pub fn address(page: &str, fragment: &str) -> String {
 }
 
 /// Content of a link to a round. In the encoded bytes, the version of the rules stands before it, and
-/// [`BrokenJoints`] after it.
+/// [`Damage`] after it.
 #[derive(Debug, Serialize, Deserialize)]
 struct SentRound {
     game: String,
@@ -214,19 +217,44 @@ struct SentRound {
     frames: Vec<u8>,
 }
 
-/// Fields of an [`Outcome`] in their order, without the number of broken joints.
+/// Fields of an [`Outcome`] in their order, without those of [`Damage`].
 type SentOutcome = (u64, Route, f32, f32, usize, usize);
 
-/// Number of joints that broke. Zero takes no space, so that links to
-/// rounds in which no joint broke stay as they were.
-struct BrokenJoints(usize);
+/// Damage in a round. Zeros at the end take no space, so that links to rounds without damage stay as they were.
+#[derive(Copy, Clone, Default)]
+struct Damage {
+    /// [`Outcome::broken`]
+    broken: usize,
+    /// [`Outcome::torn`]
+    torn: u32,
+}
 
-impl Serialize for BrokenJoints {
+impl Serialize for Damage {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self.0 {
-            0 => serializer.serialize_unit(),
-            broken => serializer.serialize_u64(broken as u64),
+        match (self.broken, self.torn) {
+            (0, 0) => serializer.serialize_unit(),
+            (broken, 0) => serializer.serialize_u64(broken as u64),
+            both => both.serialize(serializer),
         }
+    }
+}
+
+impl Damage {
+    /// Reads the damage of a won round from all of the bytes.
+    fn read(bytes: &[u8]) -> Result<Self, LinkError> {
+        if bytes.is_empty() {
+            return Ok(Self::default());
+        }
+        let (broken, rest) = taken::<usize>(bytes)?;
+        let torn = if rest.is_empty() {
+            0
+        } else {
+            all::<u32>(rest)?
+        };
+        let is_as_written = torn > 0 || broken > 0 && rest.is_empty();
+        is_as_written
+            .then_some(Self { broken, torn })
+            .ok_or(LinkError::Damaged)
     }
 }
 
@@ -240,14 +268,10 @@ impl SentRound {
             return Err(ReplayError::Version { found: version }.into());
         }
         let (sent, rest): (Self, &[u8]) = taken(bytes)?;
-        let broken = match (rest, &sent.outcome) {
-            ([], _) => 0,
-            (_, None) => return Err(LinkError::Damaged),
-            (rest, Some(_)) => match usize::try_from(all::<u64>(rest)?) {
-                Ok(0) | Err(_) => return Err(LinkError::Damaged),
-                Ok(broken) => broken,
-            },
-        };
+        if sent.outcome.is_none() && !rest.is_empty() {
+            return Err(LinkError::Damaged);
+        }
+        let damage = Damage::read(rest)?;
         let ticks = sent.ticks as usize;
         if ticks > MAX_TICKS {
             return Err(LinkError::Damaged);
@@ -267,7 +291,8 @@ impl SentRound {
                 inside,
                 pieces,
                 lost,
-                broken,
+                broken: damage.broken,
+                torn: damage.torn,
             }),
             hashes: sent.hashes.iter().map(digits).collect(),
             frames: played.iter().map(|frame| frame.row()).collect(),

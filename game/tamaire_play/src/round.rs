@@ -1,11 +1,14 @@
 //! A round: one attempt at a level.
 
+use crate::rules::Basket;
 use crate::{InputFrame, Level, PLAYERS, Progress};
+use fuwafuwa::inspect::is_hand;
 use fuwafuwa::{
     DEFAULT_TICK, Dim, Dim3, DimAngular, DimVector, JointAnchor, JointHandle, Reaction, RigidBody,
-    RigidBodyHandle, RigidBodyRef, Shape, SoftBody, StepReport, Vec3, World,
+    RigidBodyHandle, RigidBodyRef, SoftBody, StepReport, Vec3, World,
 };
 use fuwafuwa_scenes::Scene;
+use fuwafuwa_scenes::scene::Machinery;
 use std::sync::Arc;
 
 /// Maximum speed of a hand's target [m/s]. A hand much faster than a wave in the body would throw the body
@@ -56,12 +59,13 @@ impl<D: Dim> From<RigidBodyRef<'_, D>> for Hand {
 pub struct Round<D: Dim> {
     level: Arc<Level>,
     world: World<D>,
-    basket: Option<Shape<D>>,
+    baskets: Vec<Basket<D>>,
+    machinery: Machinery<D>,
     progress: Progress,
     /// Hands of all players at the start, whether or not the players have joined.
-    starts: Vec<RigidBody<D>>,
+    starts: Vec<StartHand<D>>,
     /// Hands of the players that have joined.
-    players: Vec<RigidBodyHandle>,
+    players: Vec<PlayerHand>,
     frames: Vec<InputFrame>,
     hashes: Vec<u64>,
     /// Targets of all hands at the start [m].
@@ -77,23 +81,24 @@ impl<D: Dim> Round<D> {
     /// # Panics
     /// If the level has another dimension.
     pub fn new(level: Arc<Level>) -> Self {
-        let (mut world, basket) = level.build::<D>();
-        let bodies = world.rigid_bodies();
-        let hands = bodies.filter(|(_, body)| body.follows_target());
-        let (hands, starts): (Vec<RigidBodyHandle>, Vec<RigidBody<D>>) =
-            hands.map(|(hand, body)| (hand, body.definition())).unzip();
-        // Removes all hands except the first, with their joints. The hands return when their players join, the
-        // joints do not.
-        for &hand in hands.iter().skip(1) {
-            for joint in joints_of(&world, hand) {
-                world.remove(joint).expect("the world has this joint");
+        let (mut world, baskets) = level.build::<D>();
+        let machinery = Machinery::new(level.scene(), &world);
+        let (mut players, starts) = hands_of(level.scene(), &world);
+        // Removes the hands of all players except the first, with their joints. The hands return when their players
+        // join, the joints do not.
+        for player in players.drain(1.min(players.len())..) {
+            for hand in player.parts() {
+                for joint in joints_of(&world, hand) {
+                    world.remove(joint).expect("the world has this joint");
+                }
+                world.remove(hand).expect("the world has this hand");
             }
-            world.remove(hand).expect("the world has this hand");
         }
         Self {
-            players: hands.into_iter().take(1).collect(),
-            progress: Progress::of(&level, &world),
-            basket,
+            players,
+            progress: Progress::of(&level, &baskets, &world),
+            baskets,
+            machinery,
             world,
             starts,
             frames: Vec::new(),
@@ -110,21 +115,28 @@ impl<D: Dim> Round<D> {
         self.let_players_in(&frame);
         self.has_begun |= frame.moves_a_hand(&self.targets);
         for player in 0..self.players.len() {
-            let goal = D::Vector::from_vec3(self.reachable(player, frame.goal(player)));
-            let hand = self.players[player];
-            let sent = self.world.set_target_position(hand, goal);
-            sent.expect("the hand is in the world, and its target in the arena");
+            let hand = self.players[player].hand;
+            let goal = self.reachable(hand, frame.goal(player));
+            self.send(hand, goal);
+            let moved = goal - self.starts[player].hand.position.to_vec3();
+            for follower in 0..self.players[player].followers.len() {
+                let hand = self.players[player].followers[follower];
+                let number = self.starts[player].followers[follower].0;
+                let goal = self.level.scene().hand[number].following(moved.to_array());
+                let goal = self.reachable(hand, Some(Vec3::from(goal)));
+                self.send(hand, goal);
+            }
         }
-        let report = self.world.step();
+        let report = self.machinery.step(&mut self.world);
         if self.progress.outcome.is_some() {
             return report;
         }
         self.idle_ticks += u64::from(!self.has_begun);
         let clock = self.clock_ticks();
-        let basket = self.basket.as_ref();
+        let hands: Vec<_> = self.players.iter().flat_map(PlayerHand::parts).collect();
         let (level, world) = (&self.level, &self.world);
         self.progress
-            .watch(level, basket, world, &self.players, clock);
+            .watch(level, &self.baskets, world, &hands, clock);
         if self.frames.len() < MAX_TICKS {
             self.frames.push(frame);
             if self.frames.len().is_multiple_of(60) || self.progress.outcome.is_some() {
@@ -146,7 +158,12 @@ impl<D: Dim> Round<D> {
 
     /// Returns the hands of the players that have joined, in the order of the players.
     pub fn hands(&self) -> impl ExactSizeIterator<Item = RigidBodyRef<'_, D>> {
-        self.players.iter().map(|&hand| self.hand(hand))
+        self.players.iter().map(|player| self.hand(player.hand))
+    }
+
+    /// Returns the moving parts of the room.
+    pub fn machinery(&self) -> &Machinery<D> {
+        &self.machinery
     }
 
     fn hand(&self, hand: RigidBodyHandle) -> RigidBodyRef<'_, D> {
@@ -154,9 +171,9 @@ impl<D: Dim> Round<D> {
         hand.expect("hands of players stay in the world")
     }
 
-    /// Returns the region to be filled, if the level has one.
-    pub fn basket(&self) -> Option<&Shape<D>> {
-        self.basket.as_ref()
+    /// Returns the regions to be filled.
+    pub fn baskets(&self) -> &[Basket<D>] {
+        &self.baskets
     }
 
     /// Returns the bodies that count; see [`GameText::bodies`](fuwafuwa_scenes::scene::GameText::bodies).
@@ -183,7 +200,7 @@ impl<D: Dim> Round<D> {
     /// # Panics
     /// If the level has no such hand.
     pub fn start(&self, player: usize) -> D::Vector {
-        self.starts[player].position
+        self.starts[player].hand.position
     }
 
     /// Returns the current progress.
@@ -226,16 +243,28 @@ impl<D: Dim> Round<D> {
             if frame.goals[player].is_none() {
                 break;
             }
-            let added = self.world.add_rigid_body(self.starts[player]);
-            let added = added.expect("the world accepted this hand when the level was checked");
-            self.players.push(added);
+            let mut add = |hand: RigidBody<D>| {
+                let added = self.world.add_rigid_body(hand);
+                added.expect("the world accepted this hand when the level was checked")
+            };
+            let start = &self.starts[player];
+            let hand = add(start.hand);
+            let followers = start.followers.iter();
+            let followers = followers.map(|&(_, hand)| add(hand)).collect();
+            self.players.push(PlayerHand { hand, followers });
         }
     }
 
-    /// Returns the position nearest to `wish` that the target of a player's hand can reach in a tick. Without
-    /// a `wish`, the target keeps its position.
-    fn reachable(&self, player: usize, wish: Option<Vec3>) -> Vec3 {
-        let hand = self.hand(self.players[player]);
+    /// Sets the target of a hand [m].
+    fn send(&mut self, hand: RigidBodyHandle, goal: Vec3) {
+        let sent = { &mut self.world }.set_target_position(hand, D::Vector::from_vec3(goal));
+        sent.expect("the hand is in the world, and its target in the arena");
+    }
+
+    /// Returns the position nearest to `wish` that the target of a hand can reach in a tick. Without a `wish`, the
+    /// target keeps its position.
+    fn reachable(&self, hand: RigidBodyHandle, wish: Option<Vec3>) -> Vec3 {
+        let hand = self.hand(hand);
         let target = hand.target_position().to_vec3();
         let [low, high] = self.level.arena();
         let [first, last] = hand.local_shape().bounds();
@@ -248,6 +277,53 @@ impl<D: Dim> Round<D> {
         let goal = near(target, goal, TOP_SPEED * DEFAULT_TICK);
         near(hand.position().to_vec3(), goal, LEASH)
     }
+}
+
+/// Hand of a player at the start of a round.
+#[derive(Clone, Debug)]
+struct StartHand<D: Dim> {
+    hand: RigidBody<D>,
+    /// Hands that follow it, and their indices in the scene.
+    followers: Vec<(usize, RigidBody<D>)>,
+}
+
+/// Hand of a player in the world.
+#[derive(Clone, Debug)]
+struct PlayerHand {
+    hand: RigidBodyHandle,
+    /// Hands that follow it, in the order of [`StartHand::followers`].
+    followers: Vec<RigidBodyHandle>,
+}
+
+impl PlayerHand {
+    /// Returns all rigid bodies of the hand.
+    fn parts(&self) -> impl Iterator<Item = RigidBodyHandle> {
+        std::iter::once(self.hand).chain(self.followers.iter().copied())
+    }
+}
+
+/// Returns the hands of all players of a world at the start.
+fn hands_of<D: Dim>(scene: &Scene, world: &World<D>) -> (Vec<PlayerHand>, Vec<StartHand<D>>) {
+    let bodies = world.rigid_bodies();
+    let all: Vec<_> = bodies.filter(|&(_, body)| is_hand(body)).collect();
+    let leader = |index: usize| scene.hand.get(index).and_then(|text| text.follows);
+    let leaders = (0..all.len()).filter(|&index| leader(index).is_none());
+    let hands = leaders.map(|index| {
+        let followers = (0..all.len()).filter(|&other| leader(other) == Some(index + 1));
+        let (handles, starts) = followers
+            .map(|other| (all[other].0, (other, all[other].1.definition())))
+            .unzip();
+        let player = PlayerHand {
+            hand: all[index].0,
+            followers: handles,
+        };
+        let start = StartHand {
+            hand: all[index].1.definition(),
+            followers: starts,
+        };
+        (player, start)
+    });
+    hands.unzip()
 }
 
 /// Returns the joints of a rigid body.
@@ -264,7 +340,7 @@ fn joints_of<D: Dim>(world: &World<D>, rigid: RigidBodyHandle) -> Vec<JointHandl
 /// Returns the targets of all hands of a level at the start [m]. In 2D the third coordinate is zero.
 pub(crate) fn start_targets(scene: &Scene) -> Vec<Vec3> {
     // `hand_targets(0)` would be the targets at the end of the first tick.
-    let hands = scene.hand.iter();
+    let hands = scene.hand.iter().filter(|hand| hand.follows.is_none());
     let targets = hands.map(|hand| Vec3::from(hand.target(0.0)));
     match scene.dim {
         2 => targets.map(|target| target.with_z(0.0)).collect(),
@@ -308,6 +384,7 @@ mod tests {
             pieces: 1,
             lost: 0,
             broken: 0,
+            torn: 0,
         });
         assert_eq!(Replay::of(&round).outcome, None);
     }

@@ -6,7 +6,7 @@ use fuwafuwa::{
     DEFAULT_TICK, Dim, DimVector, ElementId, ObjectRef, PieceView, RigidBodyHandle, Shape,
     SoftBody, SoftBodyHandle, World,
 };
-use fuwafuwa_scenes::scene::GameText;
+use fuwafuwa_scenes::scene::{GameText, MAX_TOLD_BODIES};
 use serde::{Deserialize, Serialize};
 
 /// Speed below which a node counts as resting in the basket [m/s].
@@ -22,7 +22,40 @@ const SQUEEZED: f32 = 0.08;
 /// body in lasts longer than the interval.
 const LOOK: u64 = 4;
 
-/// Progress of a round. All values are about the bodies that count; see [`GameText::bodies`].
+/// Region to be filled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Basket<D: Dim> {
+    /// Region.
+    pub region: Shape<D>,
+    /// Share of the mass of its bodies that must rest in the region.
+    pub share: f32,
+    /// Numbers of the bodies that have to rest in it, counted from 1. If empty, all bodies.
+    pub bodies: Vec<usize>,
+    /// Numbers of the bodies that must not be in it.
+    pub refuses: Vec<usize>,
+}
+
+impl<D: Dim> Basket<D> {
+    /// Returns the baskets of a level with their checked regions.
+    pub(crate) fn all(rules: &GameText, regions: Vec<Shape<D>>) -> Vec<Self> {
+        let texts = rules.all_baskets().into_iter().zip(regions);
+        let baskets = texts.map(|(text, region)| Self {
+            region,
+            share: text.share.unwrap_or(rules.share),
+            bodies: text.bodies,
+            refuses: text.refuses,
+        });
+        baskets.collect()
+    }
+
+    /// Returns whether a body belongs into the basket, by its index.
+    fn wants(&self, body: usize) -> bool {
+        self.bodies.is_empty() || self.bodies.contains(&(body + 1))
+    }
+}
+
+/// Progress of a round. All values are about the bodies that count; see [`GameText::bodies`]. With several baskets,
+/// `inside` and `within` are those of the basket that lacks most, in proportion to its share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
     /// Total mass of the bodies at the start [kg].
@@ -36,13 +69,19 @@ pub struct Progress {
     pub kept: f32,
     /// Number of pieces.
     pub pieces: usize,
+    /// For each basket, the fill level: the share of the mass that it needs, 0 to 1.
+    pub fills: Vec<f32>,
+    /// Whether a basket holds mass of a body that it refuses.
+    pub refused: bool,
     /// Time for which the basket has counted as full [s]. If the level has `alone`, a hand that touches the content
     /// resets it.
     pub held: f32,
-    /// Whether a hand touches a piece in the basket.
+    /// Whether a hand touches a piece in the basket; always false in a level without `alone`.
     pub touched: bool,
     /// Number of joints that broke.
     pub broken: usize,
+    /// Bodies that were torn; see [`Outcome::torn`].
+    pub torn: u32,
     /// Whether the bars stopped squeezing the content of the basket at some moment of the current hold, the
     /// time for which enough mass has rested there. If never, a win with a torn body counts as
     /// [`Route::Mix`].
@@ -51,6 +90,10 @@ pub struct Progress {
     pub outcome: Option<Outcome>,
     /// For each body, whether it counts.
     pub(crate) counts: Vec<bool>,
+    /// Mass of the bodies of each basket at the start [kg].
+    masses: Vec<f32>,
+    /// Mass of the largest piece of each body at the start [kg]; empty if no goal asks for whole bodies.
+    largest: Vec<f32>,
     /// Number of joints at the start.
     joints: usize,
     /// Mean strain above which the bars count as squeezing a body at rest, own weight included.
@@ -79,10 +122,14 @@ pub struct Outcome {
     /// Number of joints that broke.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub broken: usize,
+    /// Bodies whose largest piece has less than 99 % of its mass at the start: the lowest bit is the first body. Always
+    /// 0 in a level without goals about whole bodies.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub torn: u32,
 }
 
-fn is_zero(number: &usize) -> bool {
-    *number == 0
+fn is_zero<T: Default + PartialEq>(number: &T) -> bool {
+    *number == T::default()
 }
 
 impl Outcome {
@@ -113,6 +160,8 @@ impl Outcome {
             joints: wish
                 .joints
                 .filter(|joints| *joints != joints_of(self.broken)),
+            whole: torn_among(&wish.whole, self.torn),
+            inside: wish.inside.filter(|least| self.inside < *least),
             route: wish.route.filter(|route| self.route != *route),
         }
     }
@@ -146,7 +195,8 @@ impl Progress {
         let is_late = wish.seconds.is_some_and(|most| seconds > most);
         let is_torn = wish.kept.is_some_and(|least| self.kept < least)
             || wish.route == Some(Route::Squeeze) && self.kept < WHOLE
-            || wish.max_pieces.is_some_and(|most| self.pieces > most);
+            || wish.max_pieces.is_some_and(|most| self.pieces > most)
+            || !torn_among(&wish.whole, self.torn).is_empty();
         let is_broken = wish.joints == Some(Joints::Whole) && self.broken > 0;
         // Before the win, only a minimum number of pieces and broken joints are certain: time passes, and bodies
         // and joints may still break.
@@ -162,10 +212,18 @@ impl Progress {
         }
     }
 
-    pub(crate) fn of<D: Dim>(level: &Level, world: &World<D>) -> Self {
-        let chosen = &level.game().bodies;
-        let counts = |body: usize| chosen.is_empty() || chosen.contains(&(body + 1));
+    pub(crate) fn of<D: Dim>(level: &Level, baskets: &[Basket<D>], world: &World<D>) -> Self {
+        let rules = level.game();
+        let counts = |body: usize| match baskets {
+            [] => rules.bodies.is_empty() || rules.bodies.contains(&(body + 1)),
+            baskets => baskets.iter().any(|basket| basket.wants(body)),
+        };
         let counts: Vec<bool> = (0..world.soft_bodies().count()).map(counts).collect();
+        let mass_of = |basket: &Basket<D>| {
+            let bodies = world.soft_bodies().enumerate();
+            let bodies = bodies.filter(|(index, _)| basket.wants(*index));
+            bodies.map(|(_, (_, body))| body.total_mass() as f32).sum()
+        };
         let bodies = counted(world, &counts);
         let views = views_of(&bodies);
         Self {
@@ -180,8 +238,16 @@ impl Progress {
             held: 0.0,
             touched: false,
             broken: 0,
+            torn: 0,
             relaxed: false,
             outcome: None,
+            fills: vec![0.0; baskets.len()],
+            refused: false,
+            masses: baskets.iter().map(mass_of).collect(),
+            largest: match asks_for_whole(rules) {
+                true => largest_pieces(world),
+                false => Vec::new(),
+            },
             joints: world.joints().count(),
             squeezed: SQUEEZED + own_strain(world, &bodies, &views),
             whole: greatest(&views),
@@ -194,7 +260,7 @@ impl Progress {
     pub(crate) fn watch<D: Dim>(
         &mut self,
         level: &Level,
-        basket: Option<&Shape<D>>,
+        baskets: &[Basket<D>],
         world: &World<D>,
         hands: &[RigidBodyHandle],
         clock: u64,
@@ -204,19 +270,50 @@ impl Progress {
         self.kept = greatest(&views) / self.whole;
         self.pieces = views.iter().map(Vec::len).sum();
         self.broken = self.joints.saturating_sub(world.joints().count());
-        let Some(basket) = basket else {
-            return;
-        };
-        let Content {
-            resting,
-            all,
-            touched,
-        } = content(&bodies, basket, &pieces_at(world, hands));
-        self.inside = resting / self.mass;
-        self.within = all / self.mass;
-        self.touched = touched;
         let rules = level.game();
-        let enough = self.inside >= rules.share && !self.waits_for_hand(rules);
+        if !self.largest.is_empty() {
+            let now = largest_pieces(world).into_iter().zip(&self.largest);
+            let torn = now
+                .enumerate()
+                .filter(|(_, (now, start))| *now < WHOLE * *start);
+            self.torn = torn.fold(0, |torn, (body, _)| torn | 1 << body);
+        }
+        if baskets.is_empty() {
+            return;
+        }
+        let at_hands = match rules.alone {
+            true => pieces_at(world, hands),
+            false => Vec::new(),
+        };
+        let contents = baskets.iter().map(|basket| {
+            let bodies = world.soft_bodies().enumerate();
+            let bodies = bodies.filter(|(index, _)| basket.wants(*index));
+            let bodies: Vec<_> = bodies.map(|(_, body)| body).collect();
+            content(&bodies, &basket.region, &at_hands)
+        });
+        let contents: Vec<Content> = contents.collect();
+        let resting: f32 = contents.iter().map(|content| content.resting).sum();
+        let shares = |mass: fn(&Content) -> f32| {
+            let needs = baskets.iter().zip(&self.masses).zip(&contents);
+            let shares = needs.map(|((basket, total), content)| {
+                // With one basket the factor is 1.
+                mass(content) / total * (rules.share / basket.share)
+            });
+            shares.collect::<Vec<f32>>()
+        };
+        let least = |shares: &[f32]| shares.iter().copied().fold(f32::INFINITY, f32::min);
+        let inside = shares(|content| content.resting);
+        self.inside = least(&inside);
+        self.within = least(&shares(|content| content.all));
+        self.fills = inside
+            .iter()
+            .map(|share| (share / rules.share).clamp(0.0, 1.0))
+            .collect();
+        self.touched = contents.iter().any(|content| content.touched);
+        self.refused = baskets
+            .iter()
+            .any(|basket| self.holds_refused(basket, world));
+        let enough = self.inside >= rules.share && !self.refused && !self.waits_for_hand(rules);
         self.held = if enough {
             self.held + DEFAULT_TICK
         } else {
@@ -225,24 +322,47 @@ impl Progress {
         self.relaxed &= enough;
         let looks = self.held == DEFAULT_TICK || world.ticks().is_multiple_of(LOOK);
         if enough && looks && !self.relaxed {
-            self.relaxed = strain_inside(&bodies, &views, basket) <= self.squeezed;
+            let strains =
+                { baskets.iter() }.map(|basket| strain_inside(&bodies, &views, &basket.region));
+            self.relaxed = strains.fold(0.0, f32::max) <= self.squeezed;
         }
         if enough && self.held >= level.game().hold {
             let all = views.iter().flatten();
             let lost = all
                 .filter(|view| view.mass > CRUMB * self.mass)
-                .filter(|view| basket.distance(D::Vector::from_vec3(view.centre)).0 > 0.0)
+                .filter(|view| {
+                    let centre = D::Vector::from_vec3(view.centre);
+                    baskets
+                        .iter()
+                        .all(|basket| basket.region.distance(centre).0 > 0.0)
+                })
                 .count();
-            self.outcome = Some(Outcome {
+            let outcome = Outcome {
                 ticks: clock,
                 route: self.route(lost),
                 kept: self.kept,
-                inside: self.inside,
+                inside: resting / self.mass,
                 pieces: self.pieces,
                 lost,
                 broken: self.broken,
-            });
+                torn: self.torn,
+            };
+            let is_allowed = |required: &Wish| outcome.fulfils(required);
+            if rules.require.as_ref().is_none_or(is_allowed) {
+                self.outcome = Some(outcome);
+            }
         }
+    }
+
+    /// Returns whether a basket holds more than a crumb of a body that it refuses.
+    fn holds_refused<D: Dim>(&self, basket: &Basket<D>, world: &World<D>) -> bool {
+        if basket.refuses.is_empty() {
+            return false;
+        }
+        let bodies = world.soft_bodies().zip(1..);
+        let refused = bodies.filter(|(_, number)| basket.refuses.contains(number));
+        let refused: Vec<_> = refused.map(|(body, _)| body).collect();
+        content(&refused, &basket.region, &[]).all > CRUMB * self.mass
     }
 
     /// Returns the route of the win. It follows from the state of the bodies, not from the player's
@@ -255,6 +375,28 @@ impl Progress {
             (false, false) => Route::Mix,
         }
     }
+}
+
+/// Returns whether a goal or the level itself asks for whole bodies.
+fn asks_for_whole(rules: &GameText) -> bool {
+    let mut wishes = rules.wish.iter().chain(&rules.require);
+    wishes.any(|wish| !wish.whole.is_empty())
+}
+
+/// Returns the numbers among `bodies` that are torn.
+fn torn_among(bodies: &[usize], torn: u32) -> Vec<usize> {
+    let is_torn = |number: &&usize| torn >> (**number - 1) & 1 == 1;
+    bodies.iter().filter(is_torn).copied().collect()
+}
+
+/// Returns the mass of the largest piece of each body that a goal can name [kg].
+fn largest_pieces<D: Dim>(world: &World<D>) -> Vec<f32> {
+    let bodies = world.soft_bodies().take(MAX_TOLD_BODIES);
+    let masses = bodies.map(|(_, body)| {
+        let views = body.piece_views();
+        views.iter().map(|view| view.mass).fold(0.0, f32::max)
+    });
+    masses.collect()
 }
 
 /// Returns the state of the joints after `broken` of them broke.

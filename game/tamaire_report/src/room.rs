@@ -1,5 +1,6 @@
 //! Map of a level's room: its cells and the objects in it.
 
+use fuwafuwa::inspect::obstacles;
 use fuwafuwa::{Dim, DimVector, Shape, Vec3};
 use tamaire_play::{AnyRound, Level, Round};
 
@@ -85,9 +86,8 @@ pub fn strokes(level: Level) -> Vec<Stroke> {
 
 fn of_round<D: Dim>(grid: Grid, round: &Round<D>) -> Vec<Stroke> {
     let world = round.world();
-    let rigid = world.rigid_bodies().map(|(_, body)| body);
-    let obstacles = rigid.filter(|body| !body.follows_target() && !body.is_sensor());
-    let obstacles = obstacles.filter_map(|body| of_shape(grid, body.shape(), ObjectKind::Obstacle));
+    let obstacles =
+        obstacles(world).filter_map(|body| of_shape(grid, body.shape(), ObjectKind::Obstacle));
     let bodies = world.soft_bodies().flat_map(|(_, body)| match D::N {
         2 => {
             let outlines = body.outlines().into_iter();
@@ -100,9 +100,9 @@ fn of_round<D: Dim>(grid: Grid, round: &Round<D>) -> Vec<Stroke> {
         }
     });
     let bodies = bodies.map(|points| closed(ObjectKind::Body, points));
-    let basket = round.basket();
-    let basket = basket.and_then(|&basket| of_shape(grid, basket, ObjectKind::Basket));
-    obstacles.chain(bodies).chain(basket).collect()
+    let baskets = round.baskets().iter();
+    let baskets = baskets.filter_map(|basket| of_shape(grid, basket.region, ObjectKind::Basket));
+    obstacles.chain(bodies).chain(baskets).collect()
 }
 
 /// Returns the outline of a shape. Half-spaces are left out, because walls and floors coincide with the

@@ -8,7 +8,8 @@ use super::skin::Skin;
 use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
 use crate::palette::Palette;
-use crate::rigid::{MAX_WALLS, hands, is_glass, obstacles};
+use crate::rigid::{MAX_WALLS, is_glass};
+use fuwafuwa::inspect::{hands, obstacles};
 use fuwafuwa::{Dim3, ElementId, MotionType, Shape, SoftBody, VoxelGrid, World};
 use glam::{Mat3, Vec3};
 use std::ops::Range;
@@ -122,7 +123,7 @@ impl Geometry {
             ..ball(particle.at, particle.radius, place as f32)
         });
         self.dust = append(&mut self.rounded, dust);
-        let lines = hands(world).enumerate().filter_map(|(player, hand)| {
+        let lines = hands(world).filter_map(|(player, hand)| {
             let below = self.ground_below(hand.position())?;
             let radius = LINE.min(LINE_SHARE * frame.camera.distance);
             let line = Shape::capsule(hand.position(), below, radius);
@@ -130,7 +131,7 @@ impl Geometry {
         });
         let lines: Vec<RoundedInstance> = lines.collect();
         self.lines = append(&mut self.rounded, lines);
-        let basket = frame.basket.iter();
+        let basket = frame.baskets.iter();
         let basket = basket
             .filter_map(|basket| RoundedInstance::of(basket.region, palette.basket, basket.fill));
         self.basket = append(&mut self.rounded, basket);
@@ -164,7 +165,7 @@ impl Geometry {
 
 /// Returns the instances of a world's hands.
 fn balls(world: &World<Dim3>, palette: &Palette) -> impl Iterator<Item = RoundedInstance> {
-    hands(world).enumerate().filter_map(|(player, hand)| {
+    hands(world).filter_map(|(player, hand)| {
         RoundedInstance::of(hand.shape(), palette.hand(player), player as f32)
     })
 }

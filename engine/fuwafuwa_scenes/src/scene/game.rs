@@ -14,6 +14,9 @@ pub struct GameText {
     pub name: LocalizedText,
     /// Region that must be filled, enclosed by the wooden bars.
     pub basket: Option<BoxText>,
+    /// Several regions that must all be filled at the same time, in place of `basket`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub baskets: Vec<BasketText>,
     /// Share of the bodies' mass that must rest in the basket, above 0 and up to 1; default 0.6.
     #[serde(default = "usual_share")]
     pub share: f32,
@@ -28,6 +31,8 @@ pub struct GameText {
     /// joints.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<usize>,
+    /// Conditions without which the level is not won. They are those of a goal.
+    pub require: Option<WishText>,
     /// Routes by which the level can be won. If empty, all routes that its materials allow.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub routes: Vec<RouteText>,
@@ -41,6 +46,24 @@ pub struct GameText {
     /// Optional goals of the level.
     #[serde(default)]
     pub wish: Vec<WishText>,
+}
+
+/// One of several regions that must be filled.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BasketText {
+    /// Centre [m].
+    pub centre: [f32; 3],
+    /// Half widths on each axis [m]; the third is ignored in 2D.
+    pub half: [f32; 3],
+    /// Share of the mass of its bodies that must rest in it, above 0 and up to 1; default that of the level.
+    pub share: Option<f32>,
+    /// Numbers of the bodies that have to rest in it, counted from 1; default those of the level.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<usize>,
+    /// Numbers of the bodies that must not be in it. It does not count while it holds more than a crumb of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub refuses: Vec<usize>,
 }
 
 /// Aid that makes a level easier.
@@ -78,6 +101,12 @@ pub struct WishText {
     pub max_pieces: Option<usize>,
     /// State of the joints when the level is won.
     pub joints: Option<JointsText>,
+    /// Numbers of bodies that must be whole when the level is won, counted from 1. Bodies that do not count for the
+    /// basket may be among them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub whole: Vec<usize>,
+    /// Minimum share of the mass of all bodies that count in the baskets when the level is won, 0 to 1.
+    pub inside: Option<f32>,
     /// Route by which the level must be won.
     pub route: Option<RouteText>,
 }
@@ -107,31 +136,43 @@ pub enum RouteText {
 /// Maximum number of optional goals in a level: the result screen lists them all.
 const MAX_WISHES: usize = 8;
 
+/// Maximum number of baskets in a level.
+const MAX_BASKETS: usize = 8;
+
 impl GameText {
-    /// Returns the checked basket, if there is one.
-    pub(super) fn basket<D: Dim>(&self) -> Result<Option<Shape<D>>, FieldError> {
-        let shape = |text| {
-            let shapes = ShapeChoice {
-                half_space: None,
-                boxed: Some(text),
-                capsule: None,
-                ball: None,
-            };
-            shapes.only::<D>()
-        };
-        self.basket.as_ref().map(shape).transpose()
+    /// Returns all baskets of the level, with their shares and bodies.
+    pub fn all_baskets(&self) -> Vec<BasketText> {
+        let only = self.basket.iter().map(|basket| BasketText {
+            centre: basket.centre,
+            half: basket.half,
+            ..BasketText::default()
+        });
+        let all = only.chain(self.baskets.iter().cloned());
+        let filled = all.map(|mut basket| {
+            basket.share = basket.share.or(Some(self.share));
+            if basket.bodies.is_empty() {
+                basket.bodies = self.bodies.clone();
+            }
+            basket
+        });
+        filled.collect()
     }
 
-    /// Checks every field. The scene has `bodies` bodies and `joints` joints that can break.
-    pub(super) fn check<D: Dim>(&self, bodies: usize, joints: usize) -> Result<(), FieldError> {
-        self.basket::<D>()?;
-        for (index, &number) in self.bodies.iter().enumerate() {
-            let field = format!("bodies.{}", index + 1);
-            let expected = format!("expected 1 to {bodies}, found {number}");
-            require((1..=bodies).contains(&number), &field, expected)?;
-            let expected = format!("expected each body once, found {number} again");
-            require(!self.bodies[..index].contains(&number), &field, expected)?;
-        }
+    /// Returns whether an aid has no effect: the level ignores it, or has several baskets, which stay as wide as they are.
+    pub fn ignores(&self, assist: AssistText) -> bool {
+        let is_fixed = assist == AssistText::WiderBasket && !self.baskets.is_empty();
+        is_fixed || self.ignored_assists.contains(&assist)
+    }
+
+    /// Checks every field, and returns the regions of the baskets. The scene has `bodies` bodies and `joints` joints
+    /// that can break.
+    pub(super) fn check<D: Dim>(
+        &self,
+        bodies: usize,
+        joints: usize,
+    ) -> Result<Vec<Shape<D>>, FieldError> {
+        check_numbers("bodies", &self.bodies, bodies)?;
+        let regions = self.regions::<D>(bodies)?;
         let expected = "expected a name of 1 to 60 letters";
         for (field, name) in [
             ("name.en", Some(&self.name.en)),
@@ -151,30 +192,91 @@ impl GameText {
         let most = format!("expected {MAX_WISHES} at most, found {count}");
         require(count <= MAX_WISHES, "wish", most)?;
         for (index, wish) in self.wish.iter().enumerate() {
-            let inside = |wrong: FieldError| wrong.inside("wish", index);
-            let seconds = wish.seconds.unwrap_or(1.0);
-            let good = seconds > 0.0 && seconds.is_finite();
-            require(good, "seconds", expected("more than 0 s", seconds)).map_err(inside)?;
-            let kept = wish.kept.unwrap_or(1.0);
-            let good = (0.0..=1.0).contains(&kept);
-            require(good, "kept", expected("0 to 1", kept)).map_err(inside)?;
-            let [least, most] = [wish.pieces, wish.max_pieces];
-            let least = least.unwrap_or(1).max(1);
-            let good = most.is_none_or(|most| most >= least);
-            let found = most.unwrap_or_default();
-            let expected = format!("expected at least {least}, found {found}");
-            require(good, "max_pieces", expected).map_err(inside)?;
-            let good = joints > 0 || wish.joints.is_none();
-            let expected = "expected a joint with a breaking_force in the level";
-            require(good, "joints", expected).map_err(inside)?;
-            let given = wish != &WishText::default();
-            let expected =
-                "expected at least one of seconds, kept, pieces, max_pieces, joints and route";
-            require(given, "seconds", expected).map_err(inside)?;
+            let checked = wish.check(bodies, joints);
+            checked.map_err(|wrong| wrong.inside("wish", index))?;
         }
-        Ok(())
+        if let Some(required) = &self.require {
+            let checked = required.check(bodies, joints);
+            checked.map_err(|wrong| wrong.under("require"))?;
+        }
+        Ok(regions)
+    }
+
+    /// Checks the baskets, and returns their regions.
+    fn regions<D: Dim>(&self, bodies: usize) -> Result<Vec<Shape<D>>, FieldError> {
+        let region = |text: &BoxText| {
+            let shapes = ShapeChoice {
+                half_space: None,
+                boxed: Some(text),
+                capsule: None,
+                ball: None,
+            };
+            shapes.only::<D>()
+        };
+        let good = self.basket.is_none() || self.baskets.is_empty();
+        require(good, "baskets", "expected either basket or baskets")?;
+        let count = self.baskets.len();
+        let expected = format!("expected {MAX_BASKETS} at most, found {count}");
+        require(count <= MAX_BASKETS, "baskets", expected)?;
+        let only = self.basket.as_ref().map(region).transpose()?;
+        let mut regions = Vec::from_iter(only);
+        for (index, basket) in self.baskets.iter().enumerate() {
+            let inside = |wrong: FieldError| wrong.inside("baskets", index);
+            check_numbers("bodies", &basket.bodies, bodies).map_err(inside)?;
+            check_numbers("refuses", &basket.refuses, bodies).map_err(inside)?;
+            let share = basket.share.unwrap_or(1.0);
+            let good = share > 0.0 && share <= 1.0;
+            let expected = format!("expected above 0, up to 1, found {share}");
+            require(good, "share", expected).map_err(inside)?;
+            let (centre, half) = (basket.centre, basket.half);
+            regions.push(region(&BoxText { centre, half }).map_err(inside)?);
+        }
+        Ok(regions)
     }
 }
+
+/// Checks a list of numbers of bodies.
+fn check_numbers(field: &str, numbers: &[usize], bodies: usize) -> Result<(), FieldError> {
+    for (index, &number) in numbers.iter().enumerate() {
+        let field = format!("{field}.{}", index + 1);
+        let expected = format!("expected 1 to {bodies}, found {number}");
+        require((1..=bodies).contains(&number), &field, expected)?;
+        let expected = format!("expected each body once, found {number} again");
+        require(!numbers[..index].contains(&number), &field, expected)?;
+    }
+    Ok(())
+}
+
+impl WishText {
+    /// Checks every field; see [`GameText::check`].
+    fn check(&self, bodies: usize, joints: usize) -> Result<(), FieldError> {
+        let expected = |range: &str, found: f32| format!("expected {range}, found {found}");
+        let seconds = self.seconds.unwrap_or(1.0);
+        let good = seconds > 0.0 && seconds.is_finite();
+        require(good, "seconds", expected("more than 0 s", seconds))?;
+        for (field, share) in [("kept", self.kept), ("inside", self.inside)] {
+            let share = share.unwrap_or(1.0);
+            let good = (0.0..=1.0).contains(&share);
+            require(good, field, expected("0 to 1", share))?;
+        }
+        let [least, most] = [self.pieces, self.max_pieces];
+        let least = least.unwrap_or(1).max(1);
+        let good = most.is_none_or(|most| most >= least);
+        let found = most.unwrap_or_default();
+        let expected = format!("expected at least {least}, found {found}");
+        require(good, "max_pieces", expected)?;
+        let good = joints > 0 || self.joints.is_none();
+        let expected = "expected a joint with a breaking_force or a switch in the level";
+        require(good, "joints", expected)?;
+        check_numbers("whole", &self.whole, bodies.min(MAX_TOLD_BODIES))?;
+        let given = self != &Self::default();
+        let expected = "expected at least one of seconds, kept, inside, pieces, max_pieces, joints, whole and route";
+        require(given, "seconds", expected)
+    }
+}
+
+/// Bodies up to this number can be named in [`WishText::whole`].
+pub const MAX_TOLD_BODIES: usize = 32;
 
 fn usual_share() -> f32 {
     0.6

@@ -22,6 +22,8 @@ pub struct JointText {
     pub length: Option<f32>,
     /// Force at which the joint breaks [N]; unbreakable if missing.
     pub breaking_force: Option<f32>,
+    /// Number of a `[[switch]]` that removes the joint when it is on.
+    pub switch: Option<usize>,
 }
 
 /// Joint kind; see [`fuwafuwa::JointKind`].
@@ -142,6 +144,7 @@ impl JointText {
             damping,
             length,
             breaking_force: (force < f32::INFINITY).then_some(force),
+            switch: None,
         }
     }
 }

@@ -1,11 +1,13 @@
 //! Obstacles, hands and shapes of a scene file.
 
 use super::body::LayersText;
+use super::build::require_turning;
 use super::error::{FieldError, require, vector_of};
+use fuwafuwa::inspect::{FOLLOWING_HAND, MOVING_PART, is_hand};
 use fuwafuwa::{Dim, DimVector, Error, MotionType, RigidBody, RigidBodyHandle, Shape, Vec3, World};
 use serde::{Deserialize, Serialize};
 
-/// An `[[obstacle]]` table: a fixed rigid body. It requires exactly one shape.
+/// An `[[obstacle]]` table: a rigid body that is fixed, or moves along a path, or turns. It requires exactly one shape.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleText {
@@ -23,6 +25,35 @@ pub struct ObstacleText {
     pub friction: f32,
     /// Contact layers.
     pub layers: Option<LayersText>,
+    /// Path of a moving obstacle: time [s], then displacement from its place [m]; interpolated linearly.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub path: Vec<[f32; 4]>,
+    /// What follows at the end of the path; default `once`.
+    pub repeat: Option<RepeatText>,
+    /// Angular velocity of a turning obstacle [rad/s]; in 2D only about the third axis.
+    pub angular_velocity: Option<[f32; 3]>,
+    /// Point about which it turns [m]; default the centre of its shape.
+    pub pivot: Option<[f32; 3]>,
+    /// Maximum force that moves it along its path [N]. Without it, nothing stops the obstacle.
+    pub max_force: Option<f32>,
+    /// Maximum torque that turns it [N m]. While bodies resist with a larger one, it stands still. Without it, nothing
+    /// stops the obstacle.
+    pub max_torque: Option<f32>,
+    /// Number of a `[[switch]]`. While the switch is on, the obstacle moves forward on its path; while it is off, it
+    /// moves back to the start. Without it, the obstacle always moves forward.
+    pub switch: Option<usize>,
+}
+
+/// What follows at the end of the path of an obstacle.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RepeatText {
+    /// It stays at the end.
+    Once,
+    /// It jumps to the beginning of the path, so both ends should coincide.
+    Loop,
+    /// It moves back along the path, and forward again.
+    BackAndForth,
 }
 
 /// Half-space below a plane.
@@ -88,8 +119,26 @@ pub struct HandText {
     pub friction: Option<f32>,
     /// Contact layers.
     pub layers: Option<LayersText>,
-    /// Points of the path: time [s], then target position [m]; interpolated linearly.
+    /// Number of the hand that this one follows: it moves as that hand does, at the same distance. Such hands are parts
+    /// of a player's hand, as the tines of a fork.
+    pub follows: Option<usize>,
+    /// Axis on which the hand moves opposite to the one it follows.
+    pub mirror: Option<AxisText>,
+    /// Points of the path: time [s], then target position [m]; interpolated linearly. A hand that follows another one
+    /// has one point, its place at the start.
     pub path: Vec<[f32; 4]>,
+}
+
+/// A coordinate axis.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AxisText {
+    /// First axis.
+    X,
+    /// Second axis.
+    Y,
+    /// Third axis.
+    Z,
 }
 
 impl ObstacleText {
@@ -100,7 +149,8 @@ impl ObstacleText {
             capsule: self.capsule.as_ref(),
             ball: self.ball.as_ref(),
         };
-        let obstacle = RigidBody::fixed(shape.only()?)
+        let obstacle = self
+            .placed(shape.only()?)?
             .with_friction(self.friction)
             .with_layers(self.layers.map(Into::into).unwrap_or_default());
         let added = world.add_rigid_body(obstacle);
@@ -108,6 +158,127 @@ impl ObstacleText {
             .map(|_| ())
             .map_err(|error| FieldError::engine("friction", error))
     }
+}
+
+/// Coupling of a moving obstacle to its target: mass [kg], stiffness [N/m] and damping ratio.
+const COUPLING: [f32; 3] = [10.0, 20_000.0, 1.0];
+
+impl ObstacleText {
+    /// Returns whether the obstacle moves.
+    pub fn moves(&self) -> bool {
+        !self.path.is_empty() || self.angular_velocity.is_some()
+    }
+
+    /// Returns the obstacle at its place, before layers and friction.
+    fn placed<D: Dim>(&self, shape: Shape<D>) -> Result<RigidBody<D>, FieldError> {
+        let rests = [
+            (
+                "repeat",
+                self.repeat.is_some() && self.path.is_empty(),
+                "path",
+            ),
+            (
+                "pivot",
+                self.pivot.is_some() && self.angular_velocity.is_none(),
+                "angular_velocity",
+            ),
+            (
+                "max_force",
+                self.max_force.is_some() && self.path.is_empty(),
+                "path",
+            ),
+            (
+                "max_torque",
+                self.max_torque.is_some() && self.angular_velocity.is_none(),
+                "angular_velocity",
+            ),
+            ("switch", self.switch.is_some() && !self.moves(), "path"),
+        ];
+        for (field, is_vain, needed) in rests {
+            let expected = format!("allowed only for an obstacle with {needed}");
+            require(!is_vain, field, expected)?;
+        }
+        if !self.moves() {
+            return Ok(RigidBody::fixed(shape));
+        }
+        let bounded = !matches!(shape, Shape::HalfSpace { .. });
+        require(bounded, "half_space", "expected a bounded shape: it moves")?;
+        check_path::<D>(&self.path)?;
+        let turning = self.angular_velocity.unwrap_or_default();
+        vector_of::<D>("pivot", self.pivot.unwrap_or_default())?;
+        let finite = turning.iter().all(|speed| speed.is_finite());
+        let expected = format!("expected numbers in rad/s, found {turning:?}");
+        require(finite, "angular_velocity", expected)?;
+        require_turning::<D>("angular_velocity", turning)?;
+        for (field, limit) in [
+            ("max_force", self.max_force),
+            ("max_torque", self.max_torque),
+        ] {
+            let limit = limit.unwrap_or(1.0);
+            let expected = format!("expected a positive number, found {limit}");
+            require(limit > 0.0, field, expected)?;
+        }
+        let motion_type = match self.max_force {
+            None => MotionType::Kinematic,
+            Some(max_force) => {
+                let [mass, stiffness, damping] = COUPLING;
+                MotionType::Coupled {
+                    mass,
+                    stiffness,
+                    damping,
+                    max_force,
+                }
+            }
+        };
+        let pivot = self.pivot_of(&shape);
+        let body = RigidBody::new(shape.translated(-pivot), motion_type).at(pivot);
+        Ok(RigidBody {
+            user_data: MOVING_PART,
+            ..body
+        })
+    }
+
+    /// Returns the point about which the obstacle turns [m].
+    pub(super) fn pivot_of<D: Dim>(&self, shape: &Shape<D>) -> D::Vector {
+        match self.pivot {
+            Some(pivot) => D::Vector::from_vec3(Vec3::from(pivot)),
+            None => {
+                let [low, high] = shape.bounds();
+                (low + high) * 0.5
+            }
+        }
+    }
+
+    /// Returns the displacement [m] after moving for `seconds` [s].
+    pub fn displacement(&self, seconds: f32) -> [f32; 3] {
+        let length = self.path.last().map_or(0.0, |end| end[0]);
+        let seconds = match self.repeat {
+            _ if length <= 0.0 => seconds,
+            None | Some(RepeatText::Once) => seconds,
+            Some(RepeatText::Loop) => seconds % length,
+            Some(RepeatText::BackAndForth) => {
+                let phase = seconds % (2.0 * length);
+                phase.min(2.0 * length - phase)
+            }
+        };
+        point_at(&self.path, seconds)
+    }
+}
+
+/// Checks the times and places of a path.
+fn check_path<D: Dim>(path: &[[f32; 4]]) -> Result<(), FieldError> {
+    let found = path.len();
+    let expected = format!("expected {MAX_POINTS} points at most, found {found}");
+    require(found <= MAX_POINTS, "path", expected)?;
+    let mut before = 0.0;
+    for (index, &[seconds, x, y, z]) in path.iter().enumerate() {
+        let field = format!("path.{}", index + 1);
+        let expected = format!("expected a time of {before} s or more, found {seconds}");
+        require(seconds >= before && seconds.is_finite(), &field, expected)?;
+        vector_of::<D>(&field, [x, y, z])?;
+        before = seconds;
+    }
+    Ok(())
 }
 
 /// The possible shapes of a table; exactly one must be present.
@@ -155,27 +326,27 @@ impl ShapeChoice<'_> {
     }
 }
 
-/// Maximum number of points in the path of a hand: each tick searches it from the beginning.
+/// Maximum number of points in a path: each tick searches it from the beginning.
 const MAX_POINTS: usize = 10_000;
 
 impl HandText {
-    pub(super) fn add_to<D: Dim>(&self, world: &mut World<D>) -> Result<(), FieldError> {
+    /// Adds the hand to a world. If it follows another one, `player` is the index of that one's player.
+    pub(super) fn add_to<D: Dim>(
+        &self,
+        player: Option<usize>,
+        world: &mut World<D>,
+    ) -> Result<(), FieldError> {
         require(
             !self.path.is_empty(),
             "path",
             "expected a point [seconds, x, y, z] at least",
         )?;
-        let found = self.path.len();
-        let expected = format!("expected {MAX_POINTS} points at most, found {found}");
-        require(found <= MAX_POINTS, "path", expected)?;
-        let mut before = 0.0;
-        for (index, &[seconds, x, y, z]) in self.path.iter().enumerate() {
-            let field = format!("path.{}", index + 1);
-            let expected = format!("expected a time of {before} s or more, found {seconds}");
-            require(seconds >= before && seconds.is_finite(), &field, expected)?;
-            vector_of::<D>(&field, [x, y, z])?;
-            before = seconds;
-        }
+        check_path::<D>(&self.path)?;
+        let good = self.follows.is_none() || self.path.len() == 1;
+        let expected = "expected one point: the hand follows another one";
+        require(good, "path", expected)?;
+        let good = self.follows.is_some() || self.mirror.is_none();
+        require(good, "mirror", "allowed only for a hand with follows")?;
         let shape = self.shape::<D>()?;
         let mut motion_type = match self.kinematic {
             true => MotionType::Kinematic,
@@ -195,9 +366,10 @@ impl HandText {
         let hand = RigidBody::new(shape, motion_type)
             .at(start)
             .with_layers(self.layers.map(Into::into).unwrap_or_default());
-        let hand = match self.friction {
-            Some(friction) => hand.with_friction(friction),
-            None => hand,
+        let hand = RigidBody {
+            friction: self.friction.unwrap_or(hand.friction),
+            user_data: player.map_or(0, |player| FOLLOWING_HAND + player as u64),
+            ..hand
         };
         let added = world.add_rigid_body(hand);
         added
@@ -228,9 +400,19 @@ impl HandText {
         }
     }
 
-    /// Returns the target position [m] at a time [s].
+    /// Returns the target position [m] at a time [s], of a hand that follows no other one.
     pub fn target(&self, seconds: f32) -> [f32; 3] {
         point_at(&self.path, seconds)
+    }
+
+    /// Returns the target position [m] of a hand that follows another one, which has moved by `moved` [m] from its
+    /// start.
+    pub fn following(&self, moved: [f32; 3]) -> [f32; 3] {
+        let start = self.target(0.0);
+        [0, 1, 2].map(|axis: usize| match self.mirror {
+            Some(mirror) if mirror as usize == axis => start[axis] - moved[axis],
+            _ => start[axis] + moved[axis],
+        })
     }
 }
 
@@ -253,9 +435,7 @@ pub fn point_at(path: &[[f32; 4]], seconds: f32) -> [f32; 3] {
 
 /// Sets the targets of a world's hands, in order. A hand with a non-finite target keeps its old one.
 pub(crate) fn set_hand_targets<D: Dim>(world: &mut World<D>, targets: &[[f32; 3]]) {
-    let hands = world
-        .rigid_bodies()
-        .filter(|(_, body)| body.follows_target());
+    let hands = world.rigid_bodies().filter(|&(_, body)| is_hand(body));
     let hands: Vec<RigidBodyHandle> = hands.map(|(hand, _)| hand).collect();
     for (hand, &target) in hands.into_iter().zip(targets) {
         let target = D::Vector::from_vec3(Vec3::from(target));

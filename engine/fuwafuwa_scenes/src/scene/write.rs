@@ -89,6 +89,8 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
         hand: Vec::new(),
         rigid_body: Vec::new(),
         joint: Vec::new(),
+        switch: Vec::new(),
+        field: Vec::new(),
         game: None,
         origin: Origin::default(),
     };

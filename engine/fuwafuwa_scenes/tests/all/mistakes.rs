@@ -480,7 +480,7 @@ fn build_limits_length_of_lists() {
     ] {
         let scene = Scene::read("toy.toml", &text, &[]).unwrap();
         let built = scene.build::<Dim2>().map(drop);
-        let error = built.and(scene.basket::<Dim2>().map(drop)).unwrap_err();
+        let error = built.and(scene.baskets::<Dim2>().map(drop)).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
     }
     let path = "path = [".to_string() + &"[0,0,0,0],\n".repeat(10_001);

@@ -151,7 +151,7 @@ checked! {
             return Err(format!("expected 1 to {MOST_LEVELS} levels, found {}", ids.len()));
         }
         let open = |id: &String| match Level::open(id) {
-            Ok(level) if level.game().basket.is_some() => Ok(Arc::new(level)),
+            Ok(level) if level.has_basket() => Ok(Arc::new(level)),
             Ok(_) => Err(format!("expected a level that can be won, found {id:?}")),
             Err(LevelError::Unknown { known, .. }) => {
                 let found = if is_link(id) { "the link " } else { "" };

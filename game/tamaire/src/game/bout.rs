@@ -114,7 +114,7 @@ impl CurrentRound {
 
     /// Whether a second player can join.
     pub fn takes_two(&self) -> bool {
-        self.session.is_played() && self.round().level().scene().hand.len() > 1
+        self.session.is_played() && self.round().level().players() > 1
     }
 
     /// Rotation of the camera around the vertical axis, to the right [rad]. `None` in 2D.

@@ -3,10 +3,9 @@
 use super::confetti::Confetti;
 use super::feelings::{Feeling, MoodInput, largest_mass};
 use app_shell::CameraRig;
-use fuwafuwa::{
-    Contact, Dim, DimVector, Event, NodeId, ObjectRef, Shape, SoftBody, Vec3, VoxelGrid,
-};
-use tamaire_play::{AnyRound, Round};
+use fuwafuwa::inspect::is_hand;
+use fuwafuwa::{Contact, Dim, DimVector, Event, NodeId, ObjectRef, SoftBody, Vec3, VoxelGrid};
+use tamaire_play::{AnyRound, Basket, Round};
 
 /// Maximum number of particles.
 const MOST: usize = 400;
@@ -167,7 +166,7 @@ impl Effects {
         let mut looked_up = 0;
         let follows_target = |rigid| {
             let rigid = world.rigid_body(rigid);
-            rigid.is_ok_and(|rigid| rigid.follows_target())
+            rigid.is_ok_and(is_hand)
         };
         let mut torn: Vec<Option<Vec3>> = vec![None; self.feelings.len()];
         let rank_of = |body| {
@@ -220,13 +219,13 @@ impl Effects {
         let bodies = self.feelings.iter_mut().zip(world.soft_bodies());
         for ((feeling, (_, body)), (torn, pressure)) in bodies.zip(events) {
             let middle = D::Vector::from_vec3(feeling.middle);
-            let in_basket = |region: &Shape<D>| region.distance(middle).0 < 0.0;
+            let in_basket = |basket: &Basket<D>| basket.region.distance(middle).0 < 0.0;
             let fate = MoodInput {
                 eye: (D::N == 3).then(|| camera.eye(self.room)),
                 tick: world.ticks(),
                 torn,
                 pressed: *pressure > HURTS,
-                is_in_basket: is_in && round.basket().is_some_and(in_basket),
+                is_in_basket: is_in && round.baskets().iter().any(in_basket),
             };
             feeling.update(body, fate);
         }

@@ -29,7 +29,10 @@ pub(super) fn draw(painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
             }
         }
     }
-    if let Some(&Shape::Box { centre, half }) = round.basket() {
+    for basket in round.baskets() {
+        let Shape::Box { centre, half } = basket.region else {
+            continue;
+        };
         let width = 0.035 * view.scale;
         let line = along_box(view, centre, half, held);
         painter.add(Drawn::line(

@@ -190,7 +190,7 @@ fn draw_arrows(
 }
 
 fn basket_centre(round: &Round<Dim2>) -> Option<Vec2> {
-    match *round.basket()? {
+    match round.baskets().first()?.region {
         fuwafuwa::Shape::Box { centre, .. } => Some(vec2(centre.x, centre.y)),
         _ => None,
     }

@@ -13,13 +13,17 @@ pub(super) fn frame<'a, C: DimCamera>(
     round: &'a Round<C::Dim>,
     theme: &'a Theme,
 ) -> Frame<'a, C> {
-    let fill = (round.progress().inside / round.level().game().share).clamp(0.0, 1.0);
+    let baskets = round.baskets().iter().zip(&round.progress().fills);
+    let baskets = baskets.map(|(basket, &fill)| Basket {
+        region: basket.region,
+        fill,
+    });
     Frame {
         camera,
         palette: &theme.world,
         tints: tints(round.level()),
         look: fuwafuwa_render::Look::Skin,
-        basket: round.basket().map(|&region| Basket { region, fill }),
+        baskets: baskets.collect(),
         particles: &[],
         stickers: &[],
         ghost: None,

@@ -86,7 +86,8 @@ fn is_hopeless(round: &AnyRound) -> bool {
 /// into the basket.
 fn share_left<D: Dim>(round: &Round<D>) -> f32 {
     let is_in_basket = |at| {
-        { round.basket() }.is_some_and(|basket| basket.distance(D::Vector::from_vec3(at)).0 <= 0.0)
+        let at = D::Vector::from_vec3(at);
+        { round.baskets().iter() }.any(|basket| basket.region.distance(at).0 <= 0.0)
     };
     let pieces = { round.counted_bodies() }.flat_map(|body| body.piece_views());
     let left = pieces.filter(|piece| {

@@ -81,8 +81,16 @@ fn free_part() -> Id {
 fn beside_cards(game: &Game, ui: &Ui, view: View, duration: f32) -> View {
     let free: Option<Rect> = ui.data(|data| data.get_temp(free_part()));
     let is_result = game.screen() == Screen::Result;
-    let basket = game.bout.round().level().game().basket.as_ref();
+    let basket = game
+        .bout
+        .round()
+        .level()
+        .game()
+        .all_baskets()
+        .into_iter()
+        .next();
     let shown = free.zip(basket).filter(|_| is_result);
+    let shown = shown.as_ref();
     // The basket with the parts of the winner that stick out of it.
     let share = shown.map_or(1.0, |(free, basket)| {
         let wide = 2.0 * basket.half[0] + AROUND_BASKET;

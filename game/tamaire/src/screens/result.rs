@@ -62,8 +62,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
 /// Returns the horizontal position of the card, which is on the side away from the basket, so that the happy
 /// body stays visible.
 fn across(level: &Level) -> f32 {
-    let basket = level.game().basket.as_ref();
-    let is_right = basket.is_some_and(|basket| basket.centre[0] > 0.0);
+    let baskets = level.game().all_baskets();
+    let is_right = baskets.first().is_some_and(|basket| basket.centre[0] > 0.0);
     if is_right { 0.05 } else { 0.95 }
 }
 

@@ -102,6 +102,7 @@ mod tests {
             pieces: 3,
             lost: 0,
             broken: 0,
+            torn: 0,
         };
         let wish = |seconds, kept, pieces| Wish {
             seconds,
@@ -150,6 +151,7 @@ mod tests {
             pieces: 3,
             lost: 0,
             broken: 0,
+            torn: 0,
         };
         let values = |language: Language| (language.words().summary)(&outcome).map(|row| row.1);
         let english = ["20.1 s", "89 %", "59 %", "3"].map(String::from);

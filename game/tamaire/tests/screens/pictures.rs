@@ -34,6 +34,7 @@ const WON: Outcome = Outcome {
     pieces: 1,
     lost: 0,
     broken: 0,
+    torn: 0,
 };
 
 fn picture(window: &mut Window, name: &str) {

@@ -137,6 +137,7 @@ fn instructions_return_when_player_is_stuck() {
         pieces: 1,
         lost: 0,
         broken: 0,
+        torn: 0,
     };
     game(&mut window).records.note(&level, &won);
     start(&mut window, "hoop");

@@ -75,7 +75,7 @@ impl Sight {
     /// the mouth is pushed straight in if its centre is at most `off` [m] from the mouth's axis.
     pub(super) fn of<D: Dim>(round: &Round<D>, skips: usize, off: f32) -> Option<Self> {
         let (world, arena) = (round.world(), round.level().arena());
-        let region = round.basket()?;
+        let region = &round.baskets().first()?.region;
         let obstacles = &obstacles_of(round)[..];
         let basket = Basket::of(region, obstacles)?;
         let hand = round.hands().next()?;

@@ -64,7 +64,7 @@ impl StraightPush {
     }
 
     fn target<D: Dim>(&mut self, round: &Round<D>) -> Option<Vec3> {
-        let basket = round.basket()?;
+        let basket = &round.baskets().first()?.region;
         let hand = round.hands().next()?;
         let radius = hand.shape().inradius();
         let (hand, goal) = (hand.position().to_vec3(), hand.target_position().to_vec3());

@@ -1,5 +1,6 @@
 //! Checks that a level can be played from its start.
 
+use fuwafuwa::inspect::is_hand;
 use fuwafuwa::{Dim, DimVector, SoftBody, Vec3, World};
 
 /// Checks that hands can move in the arena and can reach the bodies. If not, returns the invalid field and
@@ -45,7 +46,7 @@ fn middle<D: Dim>(body: &SoftBody<D>) -> D::Vector {
 /// Returns the width of the widest hand on any axis [m].
 fn widest_hand<D: Dim>(world: &World<D>) -> f32 {
     let bodies = world.rigid_bodies();
-    let hands = bodies.filter(|(_, body)| body.follows_target());
+    let hands = bodies.filter(|&(_, body)| is_hand(body));
     let widths = hands.flat_map(|(_, hand)| {
         let [low, high] = hand.local_shape().bounds();
         (0..D::N).map(move |axis| high[axis] - low[axis])

@@ -19,7 +19,7 @@ fn squeezed(level: &Level, assists: &[Assist], seed: u64) -> Option<Outcome> {
 fn squeezing_wins_every_level_with_all_assists() {
     for (id, _) in NAMED.iter().chain(&NAMED_3D) {
         let level = Level::open(id).unwrap();
-        if level.game().basket.is_none() {
+        if !level.has_basket() {
             continue;
         }
         let outcome = squeezed(&level, &[Assist::WiderBasket, Assist::Unbreakable], 301);

@@ -91,7 +91,7 @@ fn outcome<D: Dim>(level: Arc<Level>, kind: BotKind, seed: u64, ticks: usize) ->
 /// Returns the names of the levels with a basket.
 fn levels() -> Vec<&'static str> {
     let all = NAMED.iter().chain(&NAMED_3D).map(|(id, _)| *id);
-    all.filter(|id| Level::open(id).unwrap().game().basket.is_some())
+    all.filter(|id| Level::open(id).unwrap().has_basket())
         .collect()
 }
 

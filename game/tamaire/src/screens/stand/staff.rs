@@ -338,7 +338,7 @@ fn levels(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<ConfigChange> {
     let mut changed = None;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
-        let known = { stand.known.iter() }.filter(|level| level.game().basket.is_some());
+        let known = { stand.known.iter() }.filter(|level| level.has_basket());
         for level in known.filter(|level| built_in().any(|(id, _)| id == level.id)) {
             let (id, name) = (
                 level.id.as_str(),
