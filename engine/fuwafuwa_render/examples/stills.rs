@@ -65,6 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                         region:
                             Shape::cuboid(Vec2::new(0.45, 0.425)).translated(Vec2::new(1.75, 0.5)),
                         fill: 0.0,
+                        colour: None,
                     })),
                     particles: &particles,
                     seconds: tick as f64 / 60.0,

@@ -173,7 +173,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut world: World<Dim3> = scene.build()?;
         let mut ages = Ages::default();
         let baskets = scene.baskets::<Dim3>()?.into_iter();
-        let baskets: Vec<_> = baskets.map(|region| Basket { region, fill: 0.3 }).collect();
+        let baskets: Vec<_> = baskets
+            .map(|region| Basket {
+                region,
+                fill: 0.3,
+                colour: None,
+            })
+            .collect();
         for tick in 0..=moments.iter().copied().max().unwrap_or(0) {
             scene.set_hand_targets(&mut world, tick);
             world.step();

@@ -184,6 +184,8 @@ pub struct Basket<D: Dim> {
     pub region: Shape<D>,
     /// Fill level, 0 to 1. A fuller basket glows more.
     pub fill: f32,
+    /// Colour; `None` is that of the palette.
+    pub colour: Option<Colour>,
 }
 
 /// Round soft dot.

@@ -86,8 +86,9 @@ impl RigidShapes {
         }
         self.hand_count = self.shapes.len() as u32 - self.bar_count;
         for basket in baskets {
+            let colour = basket.colour.unwrap_or(palette.basket);
             self.shapes
-                .extend(instance(basket.region, palette.basket, basket.fill));
+                .extend(instance(basket.region, colour, basket.fill));
         }
         self.dots
             .extend(particles.iter().map(|particle| DotInstance {
@@ -154,7 +155,11 @@ mod tests {
             world.add_rigid_body(body).unwrap();
         }
         let region = Shape::cuboid(Vec2::splat(0.25)).translated(Vec2::splat(0.5));
-        let basket = Basket { region, fill: 0.5 };
+        let basket = Basket {
+            region,
+            fill: 0.5,
+            colour: None,
+        };
         let dot = Particle {
             at: Vec3::new(1.0, 2.0, 0.0),
             radius: 0.01,

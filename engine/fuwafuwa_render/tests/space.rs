@@ -295,7 +295,11 @@ fn bars_hands_walls_basket_and_particles_are_visible() {
         colour: [0.8, 0.1, 0.1, 1.0],
     };
     let picture = take(&world, TextureFormat::Rgba8Unorm, |frame| {
-        frame.baskets = vec![Basket { region, fill: 1.0 }];
+        frame.baskets = vec![Basket {
+            region,
+            fill: 1.0,
+            colour: None,
+        }];
         frame.particles = std::slice::from_ref(&particle);
     });
     let floor = picture.around([0.5, 0.0, 0.7]);

@@ -21,6 +21,7 @@ mod watching;
 
 use crate::attract::attract;
 use crate::input::{Action, InputSource};
+use crate::journey::{Journey, Section};
 use crate::platform::{Damage, Dialog, DialogResult, Files, OpenRequest, Sound};
 use crate::records::Records;
 use crate::session::Session;
@@ -226,6 +227,37 @@ impl Game {
         }
     }
 
+    /// Returns the player's way along the path.
+    pub fn journey(&self) -> Journey {
+        Journey::of(self.levels.iter().map(Arc::as_ref), &self.records)
+    }
+
+    /// Returns the indices in [`Self::levels`] of the levels of a section.
+    pub fn levels_of(&self, section: Section) -> Vec<usize> {
+        let all = 0..self.levels.len();
+        all.filter(|&index| Section::of(&self.levels[index], self.is_own(index)) == section)
+            .collect()
+    }
+
+    /// Returns the number of stars that are missing until a section opens; 0 if it is open.
+    pub fn missing_stars(&self, section: Section) -> usize {
+        match section {
+            Section::Chapter(chapter) if !self.settings.open_all => self.journey().missing(chapter),
+            _ => 0,
+        }
+    }
+
+    /// Starts the level after the chosen one in the order of the list. After the last open one, shows the list.
+    pub fn start_next(&mut self) {
+        let open = Section::all().filter(|&section| self.missing_stars(section) == 0);
+        let order: Vec<usize> = open.flat_map(|section| self.levels_of(section)).collect();
+        let place = order.iter().position(|&index| index == self.chosen);
+        match place.and_then(|place| order.get(place + 1)) {
+            Some(&next) => self.start(next),
+            None => self.go(Screen::Levels),
+        }
+    }
+
     /// Starts the level with this index in [`Self::levels`], viewed from the front.
     pub fn start(&mut self, level: usize) {
         let level = self.levels[level.min(self.levels.len() - 1)].clone();
@@ -237,7 +269,10 @@ impl Game {
     fn play(&mut self, level: &Arc<Level>) {
         if self.bout.round().level().id != level.id {
             let (said, chosen) = (self.words(), &self.settings.assists);
-            for &assist in chosen.intersection(&level.game().ignored_assists) {
+            let ignored = chosen
+                .iter()
+                .filter(|&&assist| level.game().ignores(assist));
+            for &assist in ignored {
                 self.notices
                     .tell(&(said.assist_ignored)((said.assist)(assist)));
             }
@@ -248,9 +283,9 @@ impl Game {
 
     /// Returns the level with the chosen assists applied, except those that the level ignores.
     fn eased(&mut self, level: &Arc<Level>) -> Arc<Level> {
-        let ignored = &level.game().ignored_assists;
-        let chosen = &self.settings.assists;
-        let assists: BTreeSet<Assist> = chosen.difference(ignored).copied().collect();
+        let chosen = self.settings.assists.iter().copied();
+        let assists = chosen.filter(|&assist| !level.game().ignores(assist));
+        let assists: BTreeSet<Assist> = assists.collect();
         if assists.is_empty() {
             return level.clone();
         }

@@ -41,6 +41,7 @@ pub mod haptics;
 #[cfg(not(target_family = "wasm"))]
 pub mod headless;
 pub mod input;
+pub mod journey;
 pub mod licences;
 pub mod look;
 pub mod platform;

@@ -62,12 +62,19 @@ impl WishName {
                 Joints::Whole => "joints whole".into(),
                 Joints::Broken => "joints broken".into(),
             }),
+            (!wish.whole.is_empty()).then(|| format!("whole {:?}", wish.whole)),
+            wish.inside.map(|least| format!("inside {least}")),
         ];
         Self(parts.into_iter().flatten().collect::<Vec<_>>().join(", "))
     }
 }
 
 impl Record {
+    /// Returns whether the level was won.
+    pub fn is_won(&self) -> bool {
+        !self.best.is_empty() || !self.best_assisted.is_empty()
+    }
+
     /// Merges the better results of another record of the same level into this record.
     fn take(&mut self, other: Self) {
         for (route, ticks) in other.best {

@@ -46,6 +46,8 @@ pub struct Settings {
     pub scanning: Scanning,
     /// Assists that make levels easier.
     pub assists: BTreeSet<Assist>,
+    /// Whether all chapters of the path are open.
+    pub open_all: bool,
     /// Whether players race against the ghost of their own fastest round.
     pub race_best: bool,
     /// Whether the window is in full-screen mode.
@@ -122,6 +124,7 @@ impl Default for Settings {
             dwell: false,
             scanning: Scanning::default(),
             assists: BTreeSet::new(),
+            open_all: false,
             race_best: false,
             full_screen: false,
             reduced_motion: false,

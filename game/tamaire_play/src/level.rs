@@ -4,7 +4,7 @@ mod frame;
 mod path;
 mod room;
 
-pub use path::{PATH, PathLevel};
+pub use path::{CHAPTERS, Chapter, OPENING_SHARE, PATH, PathLevel};
 
 use crate::Route;
 use crate::round::start_targets;

@@ -132,8 +132,10 @@ impl Geometry {
         let lines: Vec<RoundedInstance> = lines.collect();
         self.lines = append(&mut self.rounded, lines);
         let basket = frame.baskets.iter();
-        let basket = basket
-            .filter_map(|basket| RoundedInstance::of(basket.region, palette.basket, basket.fill));
+        let basket = basket.filter_map(|basket| {
+            let colour = basket.colour.unwrap_or(palette.basket);
+            RoundedInstance::of(basket.region, colour, basket.fill)
+        });
         self.basket = append(&mut self.rounded, basket);
     }
 

@@ -11,6 +11,7 @@ mod hint;
 mod maps;
 mod opening;
 mod rest_frame;
+mod room_parts;
 mod ropes;
 mod stage;
 

@@ -4,6 +4,7 @@ use super::Face;
 use super::feelings::Feeling;
 use app_shell::{Theme, View};
 use fuwafuwa::{Dim, Vec2};
+use fuwafuwa_render::palette::Colour;
 use fuwafuwa_render::{Basket, Camera, DimCamera, Frame, Tints};
 use tamaire_play::{Level, Round};
 
@@ -17,6 +18,7 @@ pub(super) fn frame<'a, C: DimCamera>(
     let baskets = baskets.map(|(basket, &fill)| Basket {
         region: basket.region,
         fill,
+        colour: own_colour(round, basket),
     });
     Frame {
         camera,
@@ -30,6 +32,20 @@ pub(super) fn frame<'a, C: DimCamera>(
         props: &[],
         seconds: 0.0,
     }
+}
+
+/// Returns the colour of a basket for a single body, in a level with several baskets: that of the body.
+fn own_colour<D: Dim>(round: &Round<D>, basket: &tamaire_play::Basket<D>) -> Option<Colour> {
+    let level = round.level();
+    let [body] = basket.bodies[..] else {
+        return None;
+    };
+    if round.baskets().len() < 2 {
+        return None;
+    }
+    let material = level.scene().body[body - 1].material.unwrap_or(1);
+    let colour = level.colours().get(usize::from(material) - 1).copied()??;
+    Some(colour.map(|part| f32::from(part) / 255.0))
 }
 
 /// Returns the colours that a level gives to its materials.

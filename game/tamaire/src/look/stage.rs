@@ -2,7 +2,7 @@
 
 use super::feelings::Feeling;
 use super::rest_frame::{camera, face_at_rest, frame};
-use super::{DrawOptions, Face, Maps, Mood, glow, hint, ropes};
+use super::{DrawOptions, Face, Maps, Mood, glow, hint, room_parts, ropes};
 use app_shell::pass::{PaintCallback, lock, pixels};
 use app_shell::{SpaceStage, Theme};
 use eframe::egui_wgpu::{Callback, RenderState};
@@ -106,6 +106,7 @@ impl Stage {
         self.space.resolution = look.resolution;
         self.space.draw(ui, look.view.rect, round.world(), &frame);
         let painter = ui.painter();
+        room_parts::draw(painter, round, look);
         ropes::draw(painter, round.world(), look);
         hint::draw_ring_of_space(painter, round, look);
         look.effects.confetti.draw(painter, &look.view.flat());
@@ -135,6 +136,7 @@ impl Stage {
         for face in faces(round, look) {
             face.paint(painter, view);
         }
+        room_parts::draw(painter, round, look);
         ropes::draw(painter, round.world(), look);
         add(callback(Renderer::paint_rigid));
         glow::draw(painter, round, look);

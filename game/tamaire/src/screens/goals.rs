@@ -54,14 +54,15 @@ impl GoalIcon {
     }
 }
 
-/// Returns the goals of a round: the basket first, then the wishes of the level.
+/// Returns the goals of a round: the basket first, then what the level requires, then its wishes.
 fn goals(round: &AnyRound, said: &Words) -> Vec<Goal> {
     let (progress, rules) = (round.progress(), round.level().game());
     let basket = round.has_basket().then(|| Goal {
         icon: GoalIcon::Basket,
-        short: match progress.waits_for_hand(rules) {
-            true => said.let_go.into(),
-            false => (said.share)(progress.inside, rules.share),
+        short: match progress {
+            _ if progress.waits_for_hand(rules) => said.let_go.into(),
+            _ if progress.refused => said.wrong_basket.into(),
+            _ => (said.share)(progress.inside, rules.share),
         },
         long: (said.share_in_basket)(progress.inside, rules.share),
         state: match progress.outcome {
@@ -69,7 +70,7 @@ fn goals(round: &AnyRound, said: &Words) -> Vec<Goal> {
             None => WishState::Open,
         },
     });
-    let wishes = rules.wish.iter().map(|wish| Goal {
+    let wishes = rules.require.iter().chain(&rules.wish).map(|wish| Goal {
         icon: GoalIcon::of(wish),
         short: (said.goal)(wish),
         long: (said.wish)(wish),

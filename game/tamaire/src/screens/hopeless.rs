@@ -1,4 +1,4 @@
-//! Quiet message in a round that cannot be won any more, with a button to restart.
+//! Quiet message in a round that cannot be won any more, with its reason and a button to restart.
 
 use super::buttons::pale;
 use super::hud;
@@ -7,7 +7,7 @@ use crate::input::Action;
 use app_shell::widgets::{ButtonStyle, button};
 use egui::{FontId, Rect, Ui, UiBuilder, pos2, vec2};
 use fuwafuwa::{Dim, DimVector, Vec3};
-use tamaire_play::{AnyRound, Round};
+use tamaire_play::{AnyRound, Round, Wish, WishState};
 
 /// Interval between two looks at the pieces [ticks]. A look reads all elements.
 const LOOK: u64 = 30;
@@ -29,10 +29,15 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
         return false;
     }
     let (theme, said, scale) = (game.theme(), game.words(), hud::scale(game, ui));
+    let bout = &game.bout;
     let screen = ui.max_rect();
     let most = screen.width() - 2.0 * EDGE - BUTTON.x - scale * 56.0;
     let font = FontId::proportional(scale * 19.0);
-    let text = { ui.painter() }.layout(said.hopeless.to_string(), font, theme.ink, most.max(80.0));
+    let text = match lost_condition(bout.round()) {
+        Some(wish) => (said.missed)(wish),
+        None => said.hopeless.to_string(),
+    };
+    let text = { ui.painter() }.layout(text, font, theme.ink, most.max(80.0));
     let high = (scale * HIGH).max(text.size().y + scale * 20.0);
     let size = vec2(text.size().x + BUTTON.x + scale * 44.0, high);
     let below = match game.public {
@@ -79,7 +84,13 @@ fn is_hopeless(round: &AnyRound) -> bool {
         AnyRound::Plane(round) => share_left(round),
         AnyRound::Space(round) => share_left(round),
     };
-    round.has_basket() && left < round.level().game().share
+    round.has_basket() && left < round.level().game().share || lost_condition(round).is_some()
+}
+
+/// Returns the condition of the level that can no longer be met.
+fn lost_condition(round: &AnyRound) -> Option<&Wish> {
+    let required = round.level().game().require.as_ref();
+    required.filter(|wish| round.progress().state_of(wish, round.seconds()) == WishState::Missed)
 }
 
 /// Returns the share of the mass that is in the basket or that a hand can reach. Crumbs count: they can be swept

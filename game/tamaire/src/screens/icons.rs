@@ -155,6 +155,20 @@ pub(super) fn clock(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     }
 }
 
+/// Draws a padlock.
+pub(super) fn lock(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    let stroke = Stroke::new(3.0 * scale, ink);
+    arc(
+        painter,
+        at - scale * vec2(0.0, 5.0),
+        6.5 * scale,
+        1.0,
+        stroke,
+    );
+    let body = Rect::from_center_size(at + scale * vec2(0.0, 4.0), scale * vec2(21.0, 15.0));
+    painter.rect_filled(body, 3.5 * scale, ink);
+}
+
 /// Draws a body of which a small part is missing.
 pub(super) fn kept(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     let stroke = Stroke::new(2.5 * scale, ink);

@@ -4,14 +4,17 @@ use super::confirmation::{is_pending, set_pending};
 use super::icons;
 use super::widgets::{dim_background, header_to_open, page, page_rect, words};
 use crate::game::Game;
+use crate::journey::{Journey, Section, Stars};
 use crate::look::{Maps, Stage};
 use crate::records::{Record, WishName};
+use crate::words::Language;
 use app_shell::Theme;
 use app_shell::widgets::{ButtonStyle, fitted, focus_ring, highlight, is_on, plain_button};
 use egui::{
     Color32, Rect, Response, RichText, Role, Sense, Stroke, Tooltip, Ui, Vec2, WidgetInfo, pos2,
     vec2,
 };
+use tamaire_play::level::CHAPTERS;
 use tamaire_play::{Level, Route};
 use tamaire_sound::Menu;
 
@@ -26,6 +29,7 @@ const SLIM: f32 = 36.0;
 enum LevelAction {
     Play(usize),
     TakeOut(usize),
+    TellLock(Section),
 }
 
 pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
@@ -36,7 +40,9 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let area = page_rect(ui);
     let mut back = ui.input(|input| input.key_pressed(egui::Key::Escape));
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
-        let response = header_to_open(ui, game, said.levels);
+        let Stars { earned, all } = game.journey().stars();
+        let title = format!("{}  {}", said.levels, (said.stars)(earned, all));
+        let response = header_to_open(ui, game, &title);
         back |= response.clicked();
         page(ui, "levels", f32::INFINITY, |ui| {
             ui.spacing_mut().item_spacing = vec2(GAP, GAP);
@@ -44,24 +50,45 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             let columns = ((width + GAP) / (WIDE + GAP)).round().max(2.0);
             let wide = (width - (columns - 1.0) * GAP) / columns;
             let size = vec2(wide, 0.62 * (wide - 20.0) + 92.0);
-            let places: Vec<usize> = (0..game.levels.len()).collect();
-            for row in places.chunks(columns as usize) {
-                ui.horizontal_top(|ui| {
-                    for &index in row {
-                        ui.vertical(|ui| {
-                            let response = tile(ui, game, maps, index, size);
-                            if index == game.chosen {
-                                super::widgets::focus_first(ui, &response);
-                            }
-                            if response.clicked() {
-                                wanted = Some(LevelAction::Play(index));
-                            }
-                            if game.is_own(index) && way_out(ui, game, index, wide).clicked() {
-                                wanted = Some(LevelAction::TakeOut(index));
-                            }
+            let journey = game.journey();
+            for section in Section::all() {
+                let places = game.levels_of(section);
+                if places.is_empty() {
+                    continue;
+                }
+                let missing = game.missing_stars(section);
+                heading(ui, game, section, &journey, missing);
+                for row in places.chunks(columns as usize) {
+                    let shown = ui.horizontal_top(|ui| {
+                        let shown = row.iter().map(|&index| {
+                            let shown = ui.vertical(|ui| {
+                                let response = match missing {
+                                    0 => tile(ui, game, maps, index, size),
+                                    _ => locked_tile(ui, game, index, size),
+                                };
+                                if index == game.chosen {
+                                    super::widgets::focus_first(ui, &response);
+                                }
+                                if response.clicked() {
+                                    wanted = Some(match missing {
+                                        0 => LevelAction::Play(index),
+                                        _ => LevelAction::TellLock(section),
+                                    });
+                                }
+                                if game.is_own(index) && way_out(ui, game, index, wide).clicked() {
+                                    wanted = Some(LevelAction::TakeOut(index));
+                                }
+                                response.rect
+                            });
+                            shown.inner
                         });
+                        shown.collect::<Vec<Rect>>()
+                    });
+                    if matches!(section, Section::Chapter(_)) {
+                        draw_way(ui, game, row, &shown.inner);
                     }
-                });
+                }
+                ui.add_space(6.0);
             }
             ui.add_space(10.0);
             legend(ui, game);
@@ -85,7 +112,85 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             game.take_out(index)
         }
         LevelAction::TakeOut(index) => set_pending(ui, Some(&game.levels[index].id)),
+        LevelAction::TellLock(section) => game.notify(lock_text(game, section)),
     }
+}
+
+/// Returns how a locked section opens.
+fn lock_text(game: &Game, section: Section) -> String {
+    let before = match section {
+        Section::Chapter(chapter) => chapter - 1,
+        _ => 0,
+    };
+    (game.words().opens_with)(game.missing_stars(section), before)
+}
+
+/// Shows the title of a section, and of a chapter its stars, or how it opens.
+fn heading(ui: &mut Ui, game: &Game, section: Section, journey: &Journey, missing: usize) {
+    let (theme, said) = (game.theme(), game.words());
+    let (title, stars) = match section {
+        Section::First => (said.first_levels.to_string(), None),
+        Section::Chapter(number) => {
+            let chapter = CHAPTERS[number - 1];
+            let name = match game.settings.language {
+                Language::English => chapter.en,
+                Language::Japanese => chapter.ja,
+            };
+            let title = (said.chapter)(number, name);
+            (title, Some(journey.chapters[number - 1]))
+        }
+        Section::More => (said.more_levels.to_string(), None),
+        Section::Own => (said.own_levels.to_string(), None),
+    };
+    let note = match (missing, stars) {
+        (0, Some(stars)) => (said.stars)(stars.earned, stars.all),
+        (0, None) => String::new(),
+        _ => lock_text(game, section),
+    };
+    let wide = ui.available_width();
+    let (rect, response) = ui.allocate_exact_size(vec2(wide, 34.0), Sense::hover());
+    let label = format!("{title}  {note}");
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, label.trim()));
+    let painter = ui.painter();
+    let name = fitted(painter, &title, 26.0, 0.55 * wide, theme.ink);
+    let note = fitted(painter, &note, 19.0, 0.42 * wide, theme.ink);
+    let middle = rect.center().y;
+    let at = pos2(rect.left() + 4.0, middle - 0.5 * name.size().y);
+    let after = pos2(at.x + name.size().x + 18.0, middle - 0.5 * note.size().y);
+    painter.galley(at, name, theme.ink);
+    painter.galley(after, note, theme.ink);
+}
+
+/// Draws the way from each level of a chapter to the next one in its row: full where the level was won.
+fn draw_way(ui: &Ui, game: &Game, row: &[usize], tiles: &[Rect]) {
+    let theme = game.theme();
+    for (pair, &index) in tiles.windows(2).zip(row) {
+        let record = game.records.of(&game.levels[index].id);
+        let is_won = record.is_some_and(Record::is_won);
+        let colour = if is_won { theme.accent } else { theme.faint };
+        let (from, to) = (pair[0].right_center(), pair[1].left_center());
+        for step in 0..3 {
+            let at = from.lerp(to, (step as f32 + 0.5) / 3.0);
+            ui.painter().circle_filled(at, 3.0, colour);
+        }
+    }
+}
+
+/// Shows a level that is still locked: a card with its name and a lock.
+fn locked_tile(ui: &mut Ui, game: &Game, index: usize, size: Vec2) -> Response {
+    let theme = game.theme();
+    let name = game.settings.language.of(&game.levels[index].game().name);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, false, name));
+    let painter = ui.painter();
+    painter.rect_filled(rect, 22.0, theme.card.gamma_multiply(0.6));
+    let middle = rect.center() - vec2(0.0, 18.0);
+    icons::lock(painter, middle, 1.6, theme.faint);
+    let galley = fitted(painter, name, 21.0, rect.width() - 24.0, theme.faint);
+    let at = pos2(rect.center().x, rect.bottom() - 44.0) - 0.5 * galley.size();
+    painter.galley(at, galley, theme.faint);
+    focus_ring(ui, &response, rect, 22.0, &theme);
+    response
 }
 
 /// Shows the button that removes a level from the list. A second press confirms the removal.

@@ -167,7 +167,7 @@ fn buttons(ui: &mut Ui, theme: &Theme, said: &Words, is_reached: bool) -> Option
     let mut wanted: Option<Act> = None;
     let width = (2.0 * 200.0 + GAP).min(ui.available_width());
     let again: (&str, Act) = (said.play_again, Game::retry);
-    let next: (&str, Act) = (said.next, next);
+    let next: (&str, Act) = (said.next, Game::start_next);
     let (main, other) = if is_reached {
         (next, again)
     } else {
@@ -202,10 +202,6 @@ fn buttons(ui: &mut Ui, theme: &Theme, said: &Words, is_reached: bool) -> Option
         });
     }
     wanted
-}
-
-fn next(game: &mut Game) {
-    game.start((game.chosen + 1) % game.levels.len());
 }
 
 fn race(game: &mut Game) {

@@ -84,6 +84,7 @@ fn sections(ui: &mut Ui, theme: &Theme, said: &Words, chosen: &mut Settings) -> 
         slider(ui, theme, said.sensitivity, sensitivity, 0.3, 3.0, 0.1);
         switch(ui, said.stick_places, &mut chosen.stick_places);
         switch(ui, said.race_best, &mut chosen.race_best);
+        switch(ui, said.open_all, &mut chosen.open_all);
         share(ui, said.haptics, &mut chosen.haptics);
         let size = vec2(ui.available_width(), 44.0);
         to_forces = button(ui, theme, said.try_forces, size, ButtonStyle::Other).clicked();

@@ -1,5 +1,6 @@
 //! Texts of the game in English.
 
+use super::Language;
 use super::Words;
 use super::{percent_below, percent_of_limit, tenths_above};
 use crate::input::{Action, InputMethod};
@@ -55,6 +56,13 @@ pub(super) const WORDS: Words = Words {
             Joints::Whole => "let no rope break".to_string(),
             Joints::Broken => "break a rope".to_string(),
         }));
+        if !wish.whole.is_empty() {
+            parts.push("let the fragile one stay whole".to_string());
+        }
+        parts.extend(
+            wish.inside
+                .map(|least| format!("bring in at least {} %", percent_of_limit(least))),
+        );
         parts.join(", ")
     },
     summary: |outcome| {
@@ -71,6 +79,23 @@ pub(super) const WORDS: Words = Words {
     new_best: "New best!",
     let_go: "Let go!",
     hopeless: "Not enough of the body is left to win.",
+    missed: |wish| {
+        format!(
+            "This round cannot be won any more: {}.",
+            (Language::English.words().wish)(wish)
+        )
+    },
+    wrong_basket: "Wrong basket!",
+    chapter: |number, name| format!("{number} · {name}"),
+    stars: |earned, all| format!("★ {earned} / {all}"),
+    opens_with: |missing, before| match missing {
+        1 => format!("Opens with one more star in chapter {before}"),
+        _ => format!("Opens with {missing} more stars in chapter {before}"),
+    },
+    first_levels: "Classic and playground",
+    more_levels: "More levels",
+    own_levels: "Your levels",
+    open_all: "All chapters open",
     watch: "Watch",
     race: "Race it",
     save: "Save replay",
@@ -291,6 +316,13 @@ pub(super) const WORDS: Words = Words {
             Joints::Whole => "rope whole".to_string(),
             Joints::Broken => "rope broken".to_string(),
         }));
+        if !wish.whole.is_empty() {
+            parts.push("fragile".to_string());
+        }
+        parts.extend(
+            wish.inside
+                .map(|least| format!("{} % in", percent_of_limit(least))),
+        );
         parts.join(", ")
     },
     share: |found, needed| format!("{} / {} %", percent_below(found), percent_of_limit(needed)),
@@ -317,6 +349,11 @@ pub(super) const WORDS: Words = Words {
             missed.joints.map(|joints| match joints {
                 Joints::Whole => "a rope broke".to_string(),
                 Joints::Broken => "no rope broke".to_string(),
+            }),
+            (!missed.whole.is_empty()).then(|| "it broke".to_string()),
+            missed.inside.map(|least| {
+                let found = percent_below(outcome.inside);
+                format!("{found} of {} %", percent_of_limit(least))
             }),
             missed.route.map(|_| match outcome.route {
                 Route::Squeeze => "it went in whole".to_string(),

@@ -1,5 +1,6 @@
 //! Texts of the game in Japanese (日本語).
 
+use super::Language;
 use super::Words;
 use super::{percent_below, percent_of_limit, tenths_above};
 use crate::input::{Action, InputMethod};
@@ -57,6 +58,13 @@ pub(super) const WORDS: Words = Words {
             Joints::Whole => "ひもを切らない".to_string(),
             Joints::Broken => "ひもを切る".to_string(),
         }));
+        if !wish.whole.is_empty() {
+            parts.push("こわれものを こわさない".to_string());
+        }
+        parts.extend(
+            wish.inside
+                .map(|least| format!("{}％以上入れる", percent_of_limit(least))),
+        );
         parts.join("・")
     },
     summary: |outcome| {
@@ -72,6 +80,20 @@ pub(super) const WORDS: Words = Words {
     },
     new_best: "新記録！",
     let_go: "手をはなして！",
+    missed: |wish| {
+        format!(
+            "もう クリアできません：{}",
+            (Language::Japanese.words().wish)(wish)
+        )
+    },
+    wrong_basket: "かごがちがうよ！",
+    chapter: |number, name| format!("{number}　{name}"),
+    stars: |earned, all| format!("★ {earned}／{all}"),
+    opens_with: |missing, before| format!("{before}章で あと★{missing}こで ひらく"),
+    first_levels: "クラシックと遊び場",
+    more_levels: "ほかのステージ",
+    own_levels: "じぶんのステージ",
+    open_all: "すべての章をひらく",
     hopeless: "のこりが たりなくて、もうクリアできないよ。",
     watch: "見る",
     race: "きょうそう",
@@ -295,6 +317,13 @@ pub(super) const WORDS: Words = Words {
             Joints::Whole => "ひもを切らない".to_string(),
             Joints::Broken => "ひもを切る".to_string(),
         }));
+        if !wish.whole.is_empty() {
+            parts.push("こわれものを こわさない".to_string());
+        }
+        parts.extend(
+            wish.inside
+                .map(|least| format!("{}％以上入れる", percent_of_limit(least))),
+        );
         parts.join("・")
     },
     share: |found, needed| format!("{}／{}％", percent_below(found), percent_of_limit(needed)),
@@ -316,6 +345,8 @@ pub(super) const WORDS: Words = Words {
                 Joints::Whole => "ひもが切れた".to_string(),
                 Joints::Broken => "ひもは切れなかった".to_string(),
             }),
+            (!missed.whole.is_empty()).then(|| "こわれた".to_string()),
+            { missed.inside }.map(|_| format!("{}％だった", percent_below(outcome.inside))),
             missed.route.map(|_| match outcome.route {
                 Route::Squeeze => "まるごと入った".to_string(),
                 Route::Shave => "けずって入れた".to_string(),

@@ -28,6 +28,20 @@ pub struct Words {
     pub summary: fn(&Outcome) -> [(&'static str, String); 4],
     pub new_best: &'static str,
     pub hopeless: &'static str,
+    /// Message that a condition of the level can no longer be met.
+    pub missed: fn(&Wish) -> String,
+    /// Message that a body is in a basket that refuses it.
+    pub wrong_basket: &'static str,
+    /// Title of a chapter, from its number and its name.
+    pub chapter: fn(usize, &str) -> String,
+    /// Stars of a chapter or of the whole path: those earned, and all.
+    pub stars: fn(usize, usize) -> String,
+    /// How a locked chapter opens: number of missing stars, and number of the chapter before.
+    pub opens_with: fn(usize, usize) -> String,
+    pub first_levels: &'static str,
+    pub more_levels: &'static str,
+    pub own_levels: &'static str,
+    pub open_all: &'static str,
     pub let_go: &'static str,
     pub watch: &'static str,
     pub race: &'static str,

@@ -17,6 +17,42 @@ pub struct PathLevel {
     ways: &'static str,
 }
 
+/// A chapter of the path.
+#[derive(Copy, Clone, Debug)]
+pub struct Chapter {
+    /// English name.
+    pub en: &'static str,
+    /// Japanese name.
+    pub ja: &'static str,
+}
+
+/// Chapters of the path, in order.
+pub const CHAPTERS: [Chapter; 5] = [
+    Chapter {
+        en: "Soft",
+        ja: "やわらかい",
+    },
+    Chapter {
+        en: "Torn",
+        ja: "ちぎる",
+    },
+    Chapter {
+        en: "Moving",
+        ja: "うごく",
+    },
+    Chapter {
+        en: "Tied",
+        ja: "むすぶ",
+    },
+    Chapter {
+        en: "Sticky and strange",
+        ja: "ねばねば・ふしぎ",
+    },
+];
+
+/// Share of the stars of a chapter with which the next one opens.
+pub const OPENING_SHARE: f32 = 0.5;
+
 macro_rules! level {
     ($chapter:literal, $id:literal) => {
         PathLevel {

@@ -1,0 +1,153 @@
+//! The player's way along the path: stars, and which chapters are open.
+
+use crate::records::{Records, WishName};
+use tamaire_play::Level;
+use tamaire_play::level::{CHAPTERS, OPENING_SHARE, PATH};
+
+/// Earned stars and all stars of some levels. A level has a star for the win and one for each of its goals.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Stars {
+    /// Earned stars.
+    pub earned: usize,
+    /// All stars.
+    pub all: usize,
+}
+
+impl Stars {
+    /// Returns the stars of a level.
+    pub fn of(level: &Level, records: &Records) -> Self {
+        let wishes = &level.game().wish;
+        let record = records.of(&level.id);
+        let earned = record.map_or(0, |record| {
+            let reached = wishes
+                .iter()
+                .filter(|wish| record.wishes.contains(&WishName::of(wish)));
+            usize::from(record.is_won()) + reached.count()
+        });
+        Self {
+            earned,
+            all: 1 + wishes.len(),
+        }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            earned: self.earned + other.earned,
+            all: self.all + other.all,
+        }
+    }
+}
+
+/// The player's stars in each chapter of the path.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Journey {
+    /// Stars of each chapter.
+    pub chapters: [Stars; CHAPTERS.len()],
+}
+
+impl Journey {
+    /// Returns the stars of the path among `levels`.
+    pub fn of<'a>(levels: impl Iterator<Item = &'a Level>, records: &Records) -> Self {
+        let mut chapters = [Stars::default(); CHAPTERS.len()];
+        for level in levels {
+            if let Some(chapter) = chapter_of(level) {
+                let stars = &mut chapters[chapter - 1];
+                *stars = stars.and(Stars::of(level, records));
+            }
+        }
+        Self { chapters }
+    }
+
+    /// Returns the stars of the whole path.
+    pub fn stars(&self) -> Stars {
+        self.chapters.into_iter().fold(Stars::default(), Stars::and)
+    }
+
+    /// Returns the number of stars that are missing in the chapter before, until a chapter opens; 0 if it is open.
+    pub fn missing(&self, chapter: usize) -> usize {
+        let Some(before) = chapter.checked_sub(2) else {
+            return 0;
+        };
+        let Stars { earned, all } = self.chapters[before];
+        let needed = (all as f32 * OPENING_SHARE).ceil() as usize;
+        needed.saturating_sub(earned)
+    }
+}
+
+/// Part of the list of levels.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Section {
+    /// The classic level and the playgrounds.
+    First,
+    /// Chapter of the path, counted from 1.
+    Chapter(usize),
+    /// The other built-in levels.
+    More,
+    /// Levels that the player added.
+    Own,
+}
+
+impl Section {
+    /// All sections, in order.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let chapters = (1..=CHAPTERS.len()).map(Self::Chapter);
+        [Self::First]
+            .into_iter()
+            .chain(chapters)
+            .chain([Self::More, Self::Own])
+    }
+
+    /// Returns the section of a level. `is_own` tells whether the player added it.
+    pub fn of(level: &Level, is_own: bool) -> Self {
+        const FIRST: [&str; 4] = ["classic", "classic-3d", "sandbox", "sandbox-3d"];
+        match chapter_of(level) {
+            _ if is_own => Self::Own,
+            Some(chapter) => Self::Chapter(chapter),
+            None if FIRST.contains(&level.id.as_str()) => Self::First,
+            None => Self::More,
+        }
+    }
+}
+
+/// Returns the chapter of a level on the path, counted from 1.
+pub fn chapter_of(level: &Level) -> Option<usize> {
+    let mut path = PATH.iter();
+    path.find(|known| known.id == level.id)
+        .map(|level| level.chapter)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tamaire_play::{Outcome, Route};
+
+    #[test]
+    fn chapter_opens_with_half_of_the_stars_before() {
+        let levels: Vec<Level> = PATH.iter().map(|level| level.open()).collect();
+        let mut records = Records::default();
+        let journey = |records: &Records| Journey::of(levels.iter(), records);
+        let start = journey(&records);
+        assert_eq!((start.missing(1), start.stars().earned), (0, 0));
+        assert!((2..=CHAPTERS.len()).all(|chapter| start.missing(chapter) > 0));
+        let first = levels.iter().filter(|level| chapter_of(level) == Some(1));
+        let mut expected = start.missing(2);
+        for level in first {
+            let outcome = Outcome {
+                ticks: 600,
+                route: Route::Squeeze,
+                kept: 1.0,
+                inside: 1.0,
+                pieces: 1,
+                lost: 0,
+                broken: 0,
+                torn: 0,
+            };
+            records.note(level, &outcome);
+            let earned = Stars::of(level, &records).earned;
+            assert_eq!(earned, 1 + outcome.wishes(level.game()).len());
+            expected = expected.saturating_sub(earned);
+            assert_eq!(journey(&records).missing(2), expected);
+        }
+        assert_eq!(expected, 0, "a win of each level opens the next chapter");
+    }
+}
