@@ -142,7 +142,7 @@ mod tests {
                 broken: 0,
                 torn: 0,
             };
-            records.note(level, &outcome);
+            records.note(level, &outcome, 0);
             let earned = Stars::of(level, &records).earned;
             assert_eq!(earned, 1 + outcome.wishes(level.game()).len());
             expected = expected.saturating_sub(earned);

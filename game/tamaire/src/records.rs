@@ -18,6 +18,9 @@ pub struct Record {
     pub best: BTreeMap<Route, u64>,
     /// Shortest time by route [ticks], with assists.
     pub best_assisted: BTreeMap<Route, u64>,
+    /// Shortest time by route [ticks] in rounds in which time ran back, without assists.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub best_rewound: BTreeMap<Route, u64>,
     /// Wishes of the level that were fulfilled.
     pub wishes: BTreeSet<WishName>,
 }
@@ -72,7 +75,8 @@ impl WishName {
 impl Record {
     /// Returns whether the level was won.
     pub fn is_won(&self) -> bool {
-        !self.best.is_empty() || !self.best_assisted.is_empty()
+        let all = [&self.best, &self.best_assisted, &self.best_rewound];
+        all.into_iter().any(|best| !best.is_empty())
     }
 
     /// Merges the better results of another record of the same level into this record.
@@ -82,6 +86,9 @@ impl Record {
         }
         for (route, ticks) in other.best_assisted {
             lower(&mut self.best_assisted, route, ticks);
+        }
+        for (route, ticks) in other.best_rewound {
+            lower(&mut self.best_rewound, route, ticks);
         }
         self.wishes.extend(other.wishes);
     }
@@ -112,9 +119,10 @@ impl Records {
         self.0.get(level)
     }
 
-    /// Records a win and returns whether it is the fastest win in its level by its route. A win with assists
-    /// is only compared with other assisted wins, and it fulfils no wishes.
-    pub fn note(&mut self, level: &Level, outcome: &Outcome) -> bool {
+    /// Records a win and returns whether it is the fastest win in its level by its route. `rewinds` is the number of
+    /// times that time ran back in the round. A win with assists is only compared with other assisted wins, and it
+    /// fulfils no wishes. A win with rewinds is only compared with other such wins.
+    pub fn note(&mut self, level: &Level, outcome: &Outcome, rewinds: u32) -> bool {
         let record = self.0.entry(level.id.clone()).or_default();
         if !level.game().assists.is_empty() {
             return lower(&mut record.best_assisted, outcome.route, outcome.ticks);
@@ -122,7 +130,11 @@ impl Records {
         let wishes = level.game().wish.iter();
         let fulfilled = wishes.filter(|wish| outcome.fulfils(wish));
         record.wishes.extend(fulfilled.map(WishName::of));
-        lower(&mut record.best, outcome.route, outcome.ticks)
+        let best = match rewinds {
+            0 => &mut record.best,
+            _ => &mut record.best_rewound,
+        };
+        lower(best, outcome.route, outcome.ticks)
     }
 
     /// Merges the better results of `others` into these records.
@@ -183,11 +195,11 @@ mod tests {
         let level = Level::open("classic").unwrap();
         let mut outcome = outcome();
         let mut records = Records::default();
-        assert!(records.note(&level, &outcome));
+        assert!(records.note(&level, &outcome, 0));
         outcome.ticks = 1000;
-        assert!(!records.note(&level, &outcome));
+        assert!(!records.note(&level, &outcome, 0));
         outcome.route = Route::Shave;
-        assert!(records.note(&level, &outcome));
+        assert!(records.note(&level, &outcome, 0));
         let (read, refused) = Records::read(&records.text());
         assert_eq!((&read, refused.len()), (&records, 0));
         let record = read.of("classic").unwrap();

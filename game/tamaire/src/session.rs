@@ -6,11 +6,15 @@ use app_shell::{Clock, Pace};
 use fuwafuwa::DEFAULT_TICK;
 use reel::Reel;
 use std::sync::Arc;
-use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError};
+use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError, Rewind};
 
 /// Round that advances in real time, played by people or replayed.
 pub struct Session {
     player: Player,
+    /// Earlier states of a round that people play.
+    rewind: Option<Rewind>,
+    /// Time that is to run back but was not shown yet [s]; `None` while time runs forward.
+    back: Option<f32>,
     /// Earlier round of the same level, to race against.
     ghost: Option<Playback>,
     pace: Pace,
@@ -28,7 +32,13 @@ enum Player {
 impl Session {
     /// Creates a session for a new round that people play.
     pub fn of_people(level: Arc<Level>) -> Self {
-        Self::of(Player::People(AnyRound::new(level)))
+        let round = AnyRound::new(level);
+        let rewind = Some(Rewind::new(&round));
+        let player = Player::People(round);
+        Self {
+            rewind,
+            ..Self::of(player)
+        }
     }
 
     /// Creates a session that plays a recorded round.
@@ -42,6 +52,8 @@ impl Session {
     fn of(player: Player) -> Self {
         Self {
             player,
+            rewind: None,
+            back: None,
             ghost: None,
             pace: Pace::default(),
             complaint: None,
@@ -135,6 +147,58 @@ impl Session {
         (f64::from(DEFAULT_TICK) / self.pace.cost()).min(1.0)
     }
 
+    /// Returns the time that can still run back [s]; 0 in a replay and after a win.
+    pub fn seconds_to_rewind(&self) -> f32 {
+        let left = self
+            .rewind
+            .as_ref()
+            .map_or(0, |rewind| rewind.left(self.round()));
+        left as f32 * DEFAULT_TICK
+    }
+
+    /// Whether time runs back.
+    pub fn is_rewinding(&self) -> bool {
+        self.back.is_some()
+    }
+
+    /// Lets time run back by `seconds` [s], as far as the earlier states are computed. `clock` measures the time for
+    /// that. `seen` is called with the round after each change. A ghost waits.
+    pub fn run_back(&mut self, seconds: f32, clock: &Clock, mut seen: impl FnMut(&AnyRound)) {
+        let (Player::People(round), Some(rewind)) = (&mut self.player, &mut self.rewind) else {
+            return;
+        };
+        if self.back.is_none() {
+            rewind.begin(round);
+            round.count_rewind();
+        }
+        let step = rewind.stride() as f32 * DEFAULT_TICK;
+        let mut back = self.back.unwrap_or(step) + seconds;
+        let began = clock.now();
+        while !rewind.prepare(round) && clock.now() - began < BUDGET {}
+        while back >= step && rewind.left(round) > 0 {
+            if !rewind.is_ready() {
+                // The states are still being computed: time stands.
+                back = step;
+                break;
+            }
+            rewind.back(round);
+            rewind.prepare(round);
+            seen(round);
+            back -= step;
+        }
+        self.back = Some(back);
+    }
+
+    /// Lets time run forward again after [`Self::run_back`].
+    pub fn run_forward(&mut self) {
+        if self.back.take().is_some()
+            && let Some(rewind) = &mut self.rewind
+        {
+            rewind.end();
+            self.pace.forget();
+        }
+    }
+
     /// Discards elapsed time that was not simulated yet, so that the round does not catch up.
     pub fn forget_time(&mut self) {
         self.pace.forget();
@@ -172,6 +236,9 @@ impl Session {
             Player::People(round) => {
                 let frame = wish(round);
                 round.step(frame);
+                if let Some(rewind) = &mut self.rewind {
+                    rewind.note(round);
+                }
             }
             Player::Replay(reel) if self.complaint.is_none() => {
                 self.complaint = reel.step().err();
@@ -188,6 +255,9 @@ impl Session {
         }
     }
 }
+
+/// Time per frame in which earlier states are computed while time runs back [s].
+const BUDGET: f64 = 0.012;
 
 /// Maximum number of ticks that a ghost plays during a tick of the player [ticks]. A ghost that waited for its
 /// first push when the player began catches up at this rate.

@@ -116,6 +116,16 @@ impl AnyRound {
         both!(self, round => round.world().hash())
     }
 
+    /// See [`Round::count_rewind`].
+    pub fn count_rewind(&mut self) {
+        both!(self, round => round.count_rewind())
+    }
+
+    /// See [`Round::rewinds`].
+    pub fn rewinds(&self) -> u32 {
+        both!(self, round => round.rewinds())
+    }
+
     /// See [`Round::hashes`].
     pub fn hashes(&self) -> &[u64] {
         both!(self, round => round.hashes())

@@ -136,7 +136,7 @@ impl Replay {
         Ok(code)
     }
 
-    fn sent(&self) -> Result<(u32, SentRound, Damage), LinkError> {
+    fn sent(&self) -> Result<(u32, SentRound, Extras), LinkError> {
         self.check()?;
         if self.version != VERSION {
             let found = self.version;
@@ -147,10 +147,11 @@ impl Replay {
         }
         let played: Vec<_> = (0..self.ticks()).map(|tick| self.frame(tick)).collect();
         let outcome = self.stored_outcome();
-        let damage = outcome.map_or(Damage::default(), |outcome| Damage {
-            broken: outcome.broken,
-            torn: outcome.torn,
-        });
+        let extras = Extras {
+            broken: outcome.map_or(0, |outcome| outcome.broken),
+            torn: outcome.map_or(0, |outcome| outcome.torn),
+            rewinds: self.rewinds,
+        };
         let sent = SentRound {
             game: self.game.clone(),
             level: SentLevel::of(&self.level, &self.scene)?,
@@ -163,7 +164,7 @@ impl Replay {
             ticks: self.ticks() as u32,
             frames: frames::write(&played),
         };
-        Ok((VERSION, sent, damage))
+        Ok((VERSION, sent, extras))
     }
 
     /// Reads a round from a fragment made by [`Replay::fragment`].
@@ -204,7 +205,7 @@ pub fn address(page: &str, fragment: &str) -> String {
 }
 
 /// Content of a link to a round. In the encoded bytes, the version of the rules stands before it, and
-/// [`Damage`] after it.
+/// [`Extras`] after it.
 #[derive(Debug, Serialize, Deserialize)]
 struct SentRound {
     game: String,
@@ -217,44 +218,56 @@ struct SentRound {
     frames: Vec<u8>,
 }
 
-/// Fields of an [`Outcome`] in their order, without those of [`Damage`].
+/// Fields of an [`Outcome`] in their order, without those of [`Extras`].
 type SentOutcome = (u64, Route, f32, f32, usize, usize);
 
-/// Damage in a round. Zeros at the end take no space, so that links to rounds without damage stay as they were.
+/// Numbers of a round that are usually 0. Zeros at the end take no space, so that links to usual rounds stay as they
+/// were.
 #[derive(Copy, Clone, Default)]
-struct Damage {
+struct Extras {
     /// [`Outcome::broken`]
     broken: usize,
     /// [`Outcome::torn`]
     torn: u32,
+    /// [`Replay::rewinds`]
+    rewinds: u32,
 }
 
-impl Serialize for Damage {
+impl Serialize for Extras {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match (self.broken, self.torn) {
-            (0, 0) => serializer.serialize_unit(),
-            (broken, 0) => serializer.serialize_u64(broken as u64),
-            both => both.serialize(serializer),
+        match (self.broken, self.torn, self.rewinds) {
+            (0, 0, 0) => serializer.serialize_unit(),
+            (broken, 0, 0) => serializer.serialize_u64(broken as u64),
+            (broken, torn, 0) => (broken, torn).serialize(serializer),
+            all => all.serialize(serializer),
         }
     }
 }
 
-impl Damage {
-    /// Reads the damage of a won round from all of the bytes.
+impl Extras {
+    /// Reads the numbers from all of the bytes.
     fn read(bytes: &[u8]) -> Result<Self, LinkError> {
         if bytes.is_empty() {
             return Ok(Self::default());
         }
         let (broken, rest) = taken::<usize>(bytes)?;
-        let torn = if rest.is_empty() {
+        let (torn, rest) = match rest {
+            [] => (0, rest),
+            rest => taken::<u32>(rest)?,
+        };
+        let rewinds = if rest.is_empty() {
             0
         } else {
             all::<u32>(rest)?
         };
-        let is_as_written = torn > 0 || broken > 0 && rest.is_empty();
-        is_as_written
-            .then_some(Self { broken, torn })
-            .ok_or(LinkError::Damaged)
+        let read = Self {
+            broken,
+            torn,
+            rewinds,
+        };
+        // Another length than the written one is an error.
+        let written = postcard::to_allocvec(&read).map_err(|_| LinkError::Damaged)?;
+        (written == bytes).then_some(read).ok_or(LinkError::Damaged)
     }
 }
 
@@ -268,10 +281,10 @@ impl SentRound {
             return Err(ReplayError::Version { found: version }.into());
         }
         let (sent, rest): (Self, &[u8]) = taken(bytes)?;
-        if sent.outcome.is_none() && !rest.is_empty() {
+        let extras = Extras::read(rest)?;
+        if sent.outcome.is_none() && (extras.broken, extras.torn) != (0, 0) {
             return Err(LinkError::Damaged);
         }
-        let damage = Damage::read(rest)?;
         let ticks = sent.ticks as usize;
         if ticks > MAX_TICKS {
             return Err(LinkError::Damaged);
@@ -291,9 +304,10 @@ impl SentRound {
                 inside,
                 pieces,
                 lost,
-                broken: damage.broken,
-                torn: damage.torn,
+                broken: extras.broken,
+                torn: extras.torn,
             }),
+            rewinds: extras.rewinds,
             hashes: sent.hashes.iter().map(digits).collect(),
             frames: played.iter().map(|frame| frame.row()).collect(),
             scene,

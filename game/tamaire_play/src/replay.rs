@@ -2,6 +2,7 @@
 
 use crate::level::{LevelError, has_line, stem};
 use crate::round::{MAX_TICKS, start_targets};
+use crate::rules::is_zero;
 use crate::{AnyRound, InputFrame, Level, Outcome, Round};
 use fuwafuwa::{DEFAULT_TICK, Dim};
 use fuwafuwa_scenes::Scene;
@@ -36,6 +37,9 @@ pub struct Replay {
     /// Outcome, if the round was won. Its ticks count from the first push here, and from the start of the
     /// recording in files and links.
     pub outcome: Option<Outcome>,
+    /// Number of times that time ran back in the round. The replay contains only what was played on.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rewinds: u32,
     /// Hexadecimal digits of the world's hash after every sixtieth tick and after the last tick. All sixteen
     /// digits, or the last four if the replay came from a link.
     pub hashes: Vec<String>,
@@ -96,6 +100,7 @@ impl Replay {
             outcome: outcome.filter(|outcome| {
                 outcome.ticks + round.idle_ticks() == round.frames().len() as u64
             }),
+            rewinds: round.rewinds(),
             hashes: hashes.iter().map(|hash| format!("{hash:016x}")).collect(),
             frames: round.frames().iter().map(InputFrame::row).collect(),
             scene: level.scene().clone(),

@@ -73,6 +73,26 @@ pub struct Round<D: Dim> {
     /// Number of ticks before the clock started.
     idle_ticks: u64,
     has_begun: bool,
+    /// Number of times that time ran back.
+    rewinds: u32,
+}
+
+/// State of a round at a tick, without its recording.
+#[derive(Clone, Debug)]
+pub(crate) struct RoundState<D: Dim> {
+    world: World<D>,
+    machinery: Machinery<D>,
+    progress: Progress,
+    players: Vec<PlayerHand>,
+    idle_ticks: u64,
+    has_begun: bool,
+}
+
+impl<D: Dim> RoundState<D> {
+    /// Returns the number of ticks since the start of the round.
+    pub fn tick(&self) -> u64 {
+        self.world.ticks()
+    }
 }
 
 impl<D: Dim> Round<D> {
@@ -106,6 +126,7 @@ impl<D: Dim> Round<D> {
             targets: start_targets(level.scene()),
             idle_ticks: 0,
             has_begun: false,
+            rewinds: 0,
             level,
         }
     }
@@ -144,6 +165,67 @@ impl<D: Dim> Round<D> {
             }
         }
         report
+    }
+
+    /// Returns a copy of the state of the round, without its recording.
+    pub(crate) fn state(&self) -> RoundState<D> {
+        RoundState {
+            world: self.world.clone(),
+            machinery: self.machinery.clone(),
+            progress: self.progress.clone(),
+            players: self.players.clone(),
+            idle_ticks: self.idle_ticks,
+            has_begun: self.has_begun,
+        }
+    }
+
+    /// Puts the round back into an earlier state. The recording then ends at its tick.
+    ///
+    /// # Panics
+    /// If the state is later than the recording.
+    pub(crate) fn restore(&mut self, state: RoundState<D>) {
+        let ticks = state.world.ticks() as usize;
+        assert!(
+            ticks <= self.frames.len(),
+            "the recording holds the earlier ticks"
+        );
+        self.frames.truncate(ticks);
+        self.hashes.truncate(ticks / 60);
+        self.world = state.world;
+        self.machinery = state.machinery;
+        self.progress = state.progress;
+        self.players = state.players;
+        self.idle_ticks = state.idle_ticks;
+        self.has_begun = state.has_begun;
+    }
+
+    /// Returns a round of the same level that goes on from an earlier state. It has no recording.
+    pub(crate) fn continued(&self, state: RoundState<D>) -> Self {
+        Self {
+            level: self.level.clone(),
+            world: state.world,
+            baskets: self.baskets.clone(),
+            machinery: state.machinery,
+            progress: state.progress,
+            starts: self.starts.clone(),
+            players: state.players,
+            frames: Vec::new(),
+            hashes: Vec::new(),
+            targets: self.targets.clone(),
+            idle_ticks: state.idle_ticks,
+            has_begun: state.has_begun,
+            rewinds: 0,
+        }
+    }
+
+    /// Counts a rewind of this round.
+    pub fn count_rewind(&mut self) {
+        self.rewinds += 1;
+    }
+
+    /// Returns how often time ran back in this round.
+    pub fn rewinds(&self) -> u32 {
+        self.rewinds
     }
 
     /// Returns the level that is played.

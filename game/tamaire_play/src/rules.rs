@@ -128,7 +128,8 @@ pub struct Outcome {
     pub torn: u32,
 }
 
-fn is_zero<T: Default + PartialEq>(number: &T) -> bool {
+/// Returns whether a number is 0.
+pub(crate) fn is_zero<T: Default + PartialEq>(number: &T) -> bool {
     *number == T::default()
 }
 

@@ -211,3 +211,60 @@ impl Chord {
         }
     }
 }
+
+/// Chimes played backwards, while time runs back: each swells from nothing and ends at once, and they climb.
+pub(crate) struct Shimmer {
+    rate: f32,
+    gain: Smooth,
+    /// Time of the current chime, 0 to 1.
+    swell: f32,
+    /// Number of chimes so far.
+    count: usize,
+    tones: [Tone; 2],
+}
+
+impl Shimmer {
+    pub(crate) fn new(rate: f32) -> Self {
+        Self {
+            rate,
+            gain: Smooth::new(0.06, rate),
+            swell: 0.0,
+            count: 0,
+            tones: [Tone::default(); 2],
+        }
+    }
+
+    pub(crate) fn hear(&mut self, is_on: bool) {
+        self.gain.target = f32::from(u8::from(is_on));
+    }
+
+    pub(crate) fn add(&mut self, out: &mut [Stereo]) {
+        /// MIDI notes of the chimes: C major without the fourth and the seventh.
+        const NOTES: [f32; 8] = [72.0, 76.0, 74.0, 79.0, 76.0, 81.0, 79.0, 84.0];
+        /// Number of chimes per second.
+        const PER_SECOND: f32 = 6.0;
+        if self.gain.is_silent() && self.gain.target == 0.0 {
+            (self.swell, self.count) = (0.0, 0);
+            return;
+        }
+        for sample in out {
+            self.swell += PER_SECOND / self.rate;
+            if self.swell >= 1.0 {
+                self.swell -= 1.0;
+                self.count += 1;
+            }
+            let height = NOTES[self.count % NOTES.len()];
+            let sides = panned(if self.count.is_multiple_of(2) {
+                -0.5
+            } else {
+                0.5
+            });
+            // Rises slowly and falls within a thirtieth of the chime.
+            let loud = self.swell.powi(3) * (30.0 * (1.0 - self.swell)).min(1.0);
+            let [low, high] = [0.0, 12.0].map(|above| note(height + above) / self.rate);
+            let voice = self.tones[0].next(low, 0.3) + 0.4 * self.tones[1].next(high, 0.2);
+            let sound = 0.22 * self.gain.next() * loud * voice;
+            *sample = [sample[0] + sides[0] * sound, sample[1] + sides[1] * sound];
+        }
+    }
+}

@@ -103,6 +103,7 @@ mod tests {
         presses: [PRESS, Press { x: 0.8, ..PRESS }],
         squash: 0.4,
         hold: 0.7,
+        rewind: true,
         music: true,
         hush: Mute::Nothing,
     };

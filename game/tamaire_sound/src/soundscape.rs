@@ -13,6 +13,8 @@ pub struct Soundscape {
     pub squash: f32,
     /// Elapsed share of the time for which the body must rest in the basket, from 0 to 1.
     pub hold: f32,
+    /// Whether time runs back.
+    pub rewind: bool,
     /// Whether background music plays.
     pub music: bool,
     /// Sounds that are muted for a while.

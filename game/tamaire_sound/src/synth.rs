@@ -2,7 +2,7 @@
 
 use crate::cue::Cue;
 use crate::grain::{BUSES, Bus, Buses, CHUNK, Voices};
-use crate::layer::{Chord, Squeak, Wobble};
+use crate::layer::{Chord, Shimmer, Squeak, Wobble};
 use crate::master::{HighPass, Limiter, Room};
 use crate::music::Music;
 use crate::part::{Noise, Smooth, clean};
@@ -25,6 +25,7 @@ pub struct Synth {
     squeaks: [Squeak; 2],
     wobble: Wobble,
     chord: Chord,
+    shimmer: Shimmer,
     music: Music,
     voices: Voices,
     thuds: Thuds,
@@ -50,6 +51,7 @@ impl Synth {
             squeaks: [Squeak::new(rate), Squeak::new(rate)],
             wobble: Wobble::new(rate),
             chord: Chord::new(rate),
+            shimmer: Shimmer::new(rate),
             music: Music::new(rate),
             voices: Voices::new(rate),
             thuds: Thuds::default(),
@@ -124,6 +126,7 @@ impl Synth {
         }
         self.wobble.add(effects);
         self.chord.add(effects);
+        self.shimmer.add(effects);
         if self.soundscape.music {
             self.music.play(&mut self.noise, &mut self.voices, count);
         }
@@ -152,6 +155,7 @@ impl Synth {
             presses,
             squash,
             hold,
+            rewind,
             music,
             hush,
         } = self.soundscape;
@@ -160,6 +164,7 @@ impl Synth {
         }
         self.wobble.hear(squash);
         self.chord.hear(hold);
+        self.shimmer.hear(rewind);
         let volumes = &self.volumes;
         // Squares the volume, so that half of the slider sounds about half as loud.
         let loudness = |is_on, volume| {

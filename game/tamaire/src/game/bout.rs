@@ -32,6 +32,8 @@ pub struct CurrentRound {
     pub slow: bool,
     /// Whether the round advances by single steps only.
     pub stepping: bool,
+    /// Whether the mouse holds the button on the screen that lets time run back.
+    pub is_rewind_pressed: bool,
     /// Outcome of a won round, and whether it is the player's best for its route. `None` for replays.
     pub won: Option<(Outcome, bool)>,
     pub(super) lesson: Tutorial,
@@ -59,6 +61,7 @@ impl CurrentRound {
             watch_speed: 1.0,
             slow: false,
             stepping: false,
+            is_rewind_pressed: false,
             won: None,
             lesson: Tutorial::default(),
             is_noted: false,

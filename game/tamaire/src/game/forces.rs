@@ -126,6 +126,7 @@ impl Game {
             _ if self.public.as_ref().is_some_and(|public| public.is_left) => Some(Stop::Idle),
             Screen::Play if !self.bout.session.is_played() => Some(Stop::Idle),
             Screen::Play if self.bout.stepping => Some(Stop::Paused),
+            Screen::Play if self.bout.session.is_rewinding() => Some(Stop::Reset),
             Screen::Play => haptics::silence(self.bout.round()),
             Screen::Paused => Some(Stop::Paused),
             Screen::Title if self.calls => None,

@@ -32,6 +32,7 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
         presses,
         squash: (game.bout.effects.pressure() / 1000.0).min(1.0),
         hold: (round.progress().held / hold).min(1.0),
+        rewind: game.bout.session.is_rewinding(),
         music: true,
         hush: match game.screen() {
             _ if game.is_away => Mute::Everything,

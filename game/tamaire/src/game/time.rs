@@ -2,7 +2,7 @@
 
 use super::{Controls, CurrentRound, Game, Screen, heard};
 use crate::haptics;
-use crate::input::{Bindings, Devices, Hands, InputMapping, Players};
+use crate::input::{Action, Bindings, Devices, Hands, InputMapping, Players, ScanAction};
 use crate::settings::Quality;
 use fuwafuwa::{DEFAULT_TICK, Vec3};
 use tamaire_play::{AnyRound, InputFrame, PLAYERS};
@@ -27,7 +27,13 @@ impl Game {
         };
         let slowed = if self.bout.slow { SLOW } else { 1.0 };
         let pace = slowed * watch_speed * self.settings.speed;
-        if runs {
+        if self.wants_rewind() {
+            self.run_back(seconds);
+            self.bout.effects.advance(seconds);
+        } else if runs {
+            if self.bout.session.is_rewinding() {
+                self.end_rewind();
+            }
             self.pass_ticks(seconds * pace);
             self.bout.effects.advance(seconds * pace);
         }
@@ -75,6 +81,35 @@ impl Game {
             .follow(hand, arena, seconds, self.settings.reduced_motion);
         self.sound
             .update(&heard::soundscape(self), &self.settings.volumes());
+    }
+
+    /// Whether a player lets time run back.
+    fn wants_rewind(&self) -> bool {
+        let devices = &self.controls.devices;
+        let is_held = devices.is_held(&self.settings.bindings, Action::Rewind)
+            || devices.taken == Some(ScanAction::Rewind)
+            || self.bout.is_rewind_pressed;
+        let session = &self.bout.session;
+        let can = session.is_rewinding() || session.seconds_to_rewind() > 0.0;
+        is_held && can && self.screen() == Screen::Play && session.is_played()
+    }
+
+    /// Lets time run back by `seconds` [s].
+    fn run_back(&mut self, seconds: f32) {
+        let still = self.is_still();
+        let bout = &mut self.bout;
+        let (session, effects, camera) = (&mut bout.session, &mut bout.effects, &mut bout.camera);
+        session.run_back(seconds, &self.clock, |round| {
+            effects.process_tick(round, camera, still);
+        });
+    }
+
+    /// Lets time run forward again. The hands wait until the players reach for them, as at the start of a round.
+    pub(super) fn end_rewind(&mut self) {
+        self.bout.session.run_forward();
+        self.bout.hopeless = None;
+        let is_space = self.bout.turn().is_some();
+        self.controls.begin(is_space);
     }
 
     pub(super) fn pass_ticks(&mut self, seconds: f32) {
@@ -189,7 +224,8 @@ impl Game {
             // A round from a link may have a different level under a known name. A win in such a level is not
             // recorded.
             let is_known = self.listed(&level).is_some();
-            let is_best = is_known && self.records.note(&level, &outcome);
+            let rewinds = self.bout.round().rewinds();
+            let is_best = is_known && self.records.note(&level, &outcome, rewinds);
             self.bout.won = Some((outcome, is_best));
             self.note_end();
             self.sound.play(Cue::Won(match outcome.route {
@@ -198,7 +234,7 @@ impl Game {
                 tamaire_play::Route::Mix => tamaire_sound::Route::Mix,
             }));
             self.files.keep_records(&self.records, &self.levels);
-            if is_known {
+            if is_known && rewinds == 0 {
                 self.files.keep_best(&level, self.bout.round().replay());
             }
         }

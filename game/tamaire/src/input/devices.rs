@@ -131,6 +131,13 @@ impl Devices {
         self.keys.iter().any(means)
     }
 
+    /// Whether any device holds this action.
+    pub fn is_held(&self, bindings: &Bindings, action: Action) -> bool {
+        let mut sticks = self.sticks.devices.iter();
+        self.holds(bindings, action)
+            || sticks.any(|device| held_on(device, bindings).contains(&action))
+    }
+
     /// Whether a key or screen button with this action is held.
     fn holds(&self, bindings: &Bindings, action: Action) -> bool {
         let is_held = self.holds_key(bindings, KeyboardPart::Whole, action);

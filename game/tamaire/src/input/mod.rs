@@ -46,6 +46,8 @@ pub enum Action {
     Right,
     /// Restarts the round.
     Retry,
+    /// Lets time run back while it is held.
+    Rewind,
     /// Pauses the round.
     Pause,
     /// Changes the view: skin, elements coloured by level, elements coloured by strain.
@@ -74,12 +76,13 @@ pub enum Action {
 
 impl Action {
     /// All actions, in the order of the settings.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Up,
         Self::Down,
         Self::Left,
         Self::Right,
         Self::Retry,
+        Self::Rewind,
         Self::Pause,
         Self::Elements,
         Self::Slow,

@@ -49,6 +49,8 @@ pub enum ScanAction {
     Raise,
     /// In 3D: lowers the hand while the switch is pressed.
     Lower,
+    /// Lets time run back while the switch is pressed.
+    Rewind,
     /// Pauses the round.
     Pause,
 }
@@ -78,7 +80,7 @@ impl Scan {
         };
         self.is_known |= self.is_taken;
         if !self.is_taken {
-            let others = if is_space { 3.0 } else { 1.0 };
+            let others = if is_space { 4.0 } else { 2.0 };
             self.at = (self.at + steps) % (TURN + others);
         }
         is_new && self.is_taken && self.offer(is_space) == ScanAction::Pause
@@ -90,6 +92,8 @@ impl Scan {
             (after, _) if after < 0.0 => ScanAction::Move(Vec2::angled(TAU * self.at / TURN)),
             (after, true) if after < 1.0 => ScanAction::Raise,
             (after, true) if after < 2.0 => ScanAction::Lower,
+            (after, true) if after < 3.0 => ScanAction::Rewind,
+            (after, false) if after < 1.0 => ScanAction::Rewind,
             _ => ScanAction::Pause,
         }
     }

@@ -30,6 +30,10 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
         row.push((Action::Pause, said.paused, icons::pause));
     }
     row.push((Action::Retry, said.again, icons::again));
+    if game.bout.session.seconds_to_rewind() > 0.0 || game.bout.session.is_rewinding() {
+        let name = (said.action)(Action::Rewind);
+        row.push((Action::Rewind, name, icons::rewind));
+    }
     let mut thumb: Vec<(Action, &str, Icon)> = Vec::new();
     if game.controls.means == InputMethod::Fingers && game.bout.session.is_played() {
         let name = |action| (said.action)(action);
@@ -71,6 +75,7 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
         .collect();
     let mut is_on_button = false;
     game.controls.buttons.clear();
+    game.bout.is_rewind_pressed = false;
     for (rect, (action, name, icon)) in all {
         let button = ScreenButton { action, rect };
         game.controls.buttons.push(button);
@@ -94,7 +99,9 @@ fn one(game: &mut Game, ui: &Ui, button: ScreenButton, name: &str, icon: Icon) -
     let (middle, radius) = (rect.center(), 0.5 * rect.width());
     ui.painter().circle_filled(middle, radius, fill);
     icon(ui.painter(), middle, rect.width() / HIGH, theme.ink);
-    if response.clicked() {
+    if button.action == Action::Rewind {
+        game.bout.is_rewind_pressed = response.is_pointer_button_down_on();
+    } else if response.clicked() {
         game.act(button.action, button.seat());
     }
     response.hovered()

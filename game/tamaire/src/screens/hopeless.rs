@@ -3,7 +3,7 @@
 use super::buttons::pale;
 use super::hud;
 use crate::game::{CurrentRound, Game, ScreenButton};
-use crate::input::Action;
+use crate::input::{Action, InputMethod};
 use app_shell::widgets::{ButtonStyle, button};
 use egui::{FontId, Rect, Ui, UiBuilder, pos2, vec2};
 use fuwafuwa::{Dim, DimVector, Vec3};
@@ -37,6 +37,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
         Some(wish) => (said.missed)(wish),
         None => said.hopeless.to_string(),
     };
+    let text = match rewind_hint(game) {
+        Some(hint) => format!("{text} {hint}"),
+        None => text,
+    };
     let text = { ui.painter() }.layout(text, font, theme.ink, most.max(80.0));
     let high = (scale * HIGH).max(text.size().y + scale * 20.0);
     let size = vec2(text.size().x + BUTTON.x + scale * 44.0, high);
@@ -67,6 +71,22 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
         game.act(Action::Retry, touched.seat());
     }
     response.hovered()
+}
+
+/// Returns how to let time run back, if it can.
+fn rewind_hint(game: &Game) -> Option<String> {
+    let bindings = &game.settings.bindings;
+    let key = match game.controls.means {
+        InputMethod::Fingers => "«".to_string(),
+        InputMethod::Stick => bindings.first_names(&[Action::Rewind], true),
+        InputMethod::Pad => {
+            let [_, buttons] = bindings.names(Action::Rewind, game.controls.labels());
+            buttons.split(" / ").next().unwrap_or_default().to_string()
+        }
+        InputMethod::Mouse | InputMethod::Keys => bindings.first_names(&[Action::Rewind], false),
+    };
+    let can = game.bout.session.seconds_to_rewind() > 0.0;
+    can.then(|| (game.words().hold_to_rewind)(&key))
 }
 
 /// Whether the round was hopeless at the last look.

@@ -113,6 +113,12 @@ fn draw_chips(row: &mut ChipRow, theme: &Theme, game: &Game) {
     if !game.bout.session.is_played() {
         chip("●", said.watching);
     }
+    if game.bout.session.is_rewinding() {
+        let left = game.bout.session.seconds_to_rewind();
+        chip("«", &format!("{} {left:.1}", (said.action)(Action::Rewind)));
+    } else if game.bout.round().rewinds() > 0 {
+        chip("«", said.rewound);
+    }
     if !game.bout.round().level().game().assists.is_empty() {
         chip("+", said.assisted);
     }

@@ -155,6 +155,19 @@ pub(super) fn clock(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     }
 }
 
+/// Draws two arrows to the left.
+pub(super) fn rewind(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    for x in [-9.0, 1.0] {
+        let corners = [[x, 0.0], [x + 9.0, -8.0], [x + 9.0, 8.0]];
+        let corners = corners.map(|corner| at + scale * vec2(corner[0], corner[1]));
+        painter.add(egui::Shape::convex_polygon(
+            corners.to_vec(),
+            ink,
+            Stroke::NONE,
+        ));
+    }
+}
+
 /// Draws a padlock.
 pub(super) fn lock(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     let stroke = Stroke::new(3.0 * scale, ink);

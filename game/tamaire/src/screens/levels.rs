@@ -258,18 +258,18 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
     x += gap;
     for &route in routes {
         let is_done = record.is_some_and(|record| {
-            record.best.contains_key(&route) || record.best.contains_key(&Route::Mix)
+            let by = |route| {
+                record.best.contains_key(&route) || record.best_rewound.contains_key(&route)
+            };
+            by(route) || by(Route::Mix)
         });
         icons::route(painter, &theme, pos2(x + 16.0, base), 10.0, route, is_done);
         x += 32.0;
     }
     if let Some(record) = record {
         let at = map.right_top() + vec2(-14.0, 14.0);
-        let tone = if record.best.is_empty() {
-            theme.faint
-        } else {
-            theme.good
-        };
+        let is_unaided = !record.best.is_empty() || !record.best_rewound.is_empty();
+        let tone = if is_unaided { theme.good } else { theme.faint };
         painter.circle(at, 14.0, tone, Stroke::new(3.0, theme.card));
         icons::tick(painter, at, 7.0, Stroke::new(3.0, theme.card));
     }
@@ -296,7 +296,10 @@ fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<
     let times = record.into_iter().flat_map(|record| &record.best);
     let assisted = record.into_iter().flat_map(|record| &record.best_assisted);
     let assisted = assisted.map(|best| format!("{}, {}", time(best), said.assisted));
-    let lines: Vec<String> = wishes.chain(times.map(time)).chain(assisted).collect();
+    let rewound = record.into_iter().flat_map(|record| &record.best_rewound);
+    let rewound = rewound.map(|best| format!("{}, {}", time(best), said.rewound));
+    let times = times.map(time).chain(rewound).chain(assisted);
+    let lines: Vec<String> = wishes.chain(times).collect();
     if lines.is_empty() {
         return;
     }

@@ -49,6 +49,7 @@ pub(super) fn show(game: &Game, ui: &Ui) {
         }
         ScanAction::Raise => sign(painter, &theme, above, scale, is_taken, icons::up),
         ScanAction::Lower => sign(painter, &theme, above, scale, is_taken, icons::down),
+        ScanAction::Rewind => sign(painter, &theme, above, scale, is_taken, icons::rewind),
         ScanAction::Pause => sign(painter, &theme, above, scale, is_taken, icons::pause),
     }
 }

@@ -111,7 +111,27 @@ fn beside_cards(game: &Game, ui: &Ui, view: View, duration: f32) -> View {
 }
 
 /// Shows the overlay of a round.
+/// Covers the room with a pale veil while time runs back, with rings that close in on the hand.
+fn veil(game: &Game, ui: &Ui) {
+    let violet = egui::Color32::from_rgb(150, 120, 220);
+    let (painter, screen) = (ui.painter(), ui.max_rect());
+    painter.rect_filled(screen, 0.0, violet.gamma_multiply(0.16));
+    let Some(view) = game.bout.view.filter(|_| !game.settings.reduced_motion) else {
+        return;
+    };
+    let middle = view.to_screen(game.bout.round().hands()[0].position);
+    let longest = 0.5 * screen.width();
+    for ring in 0..4 {
+        let share = 1.0 - (0.6 * game.time + 0.25 * f64::from(ring)).fract() as f32;
+        let ink = violet.gamma_multiply(0.5 * (1.0 - share));
+        painter.circle_stroke(middle, longest * share, egui::Stroke::new(4.0, ink));
+    }
+}
+
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
+    if game.bout.session.is_rewinding() {
+        veil(game, ui);
+    }
     let mut is_on_button = hud::show(game, ui);
     is_on_button |= hopeless::show(game, ui);
     offers::show(game, ui);

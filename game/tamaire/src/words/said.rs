@@ -42,6 +42,10 @@ pub struct Words {
     pub more_levels: &'static str,
     pub own_levels: &'static str,
     pub open_all: &'static str,
+    /// Mark of a round in which time ran back.
+    pub rewound: &'static str,
+    /// Hint in a hopeless round: how to let time run back, from the name of the key.
+    pub hold_to_rewind: fn(&str) -> String,
     pub let_go: &'static str,
     pub watch: &'static str,
     pub race: &'static str,

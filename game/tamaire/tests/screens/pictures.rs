@@ -173,7 +173,7 @@ fn round_3d_matches_pictures() {
     let classic = place_of(game(&mut window), "classic-3d");
     // No instructions are shown after a win.
     let level = game(&mut window).levels[classic].clone();
-    game(&mut window).records.note(&level, &WON);
+    game(&mut window).records.note(&level, &WON, 0);
     game(&mut window).start(classic);
     drive(game(&mut window), BotKind::Squeeze, |game| {
         game.bout.round().frames().len() < 120

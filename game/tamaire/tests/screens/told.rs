@@ -139,7 +139,7 @@ fn instructions_return_when_player_is_stuck() {
         broken: 0,
         torn: 0,
     };
-    game(&mut window).records.note(&level, &won);
+    game(&mut window).records.note(&level, &won, 0);
     start(&mut window, "hoop");
     assert_eq!(lines(&window), [true, false]);
     // Two rounds that are given up are the same failure.

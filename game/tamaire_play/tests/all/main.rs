@@ -6,4 +6,5 @@ mod levels;
 mod links;
 mod models;
 mod pictures;
+mod rewind;
 mod ways;
