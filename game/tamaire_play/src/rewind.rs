@@ -36,8 +36,11 @@ pub const LONGEST: u64 = 600;
 /// Memory for all copies of a round [bytes].
 pub const MEMORY: usize = 64 << 20;
 
-/// Memory of a copy per node of its bodies [bytes], in 2D and 3D, as measured with a counting allocator.
-const PER_NODE: [usize; 2] = [900, 1000];
+/// Memory of a copy per node of its bodies [bytes], in 2D and 3D. A counting allocator found up to 645 and 861 in torn
+/// bodies.
+const PER_NODE: [usize; 2] = [680, 900];
+/// Interval between two adaptations of the plan to the growing bodies [ticks].
+const LOOK: u64 = 12;
 
 /// State of a round in 2D or in 3D.
 #[derive(Clone, Debug)]
@@ -96,10 +99,20 @@ struct Plan {
 }
 
 impl Plan {
+    /// Returns the plan for copies of a round in its current state.
+    fn for_copies_of(round: &AnyRound) -> Self {
+        let (nodes, per_node) = match round {
+            AnyRound::Plane(round) => (nodes_of(round.world()), PER_NODE[0]),
+            AnyRound::Space(round) => (nodes_of(round.world()), PER_NODE[1]),
+        };
+        let count = MEMORY / (nodes * per_node).max(1);
+        Self::of(count as u64)
+    }
+
     /// Returns the plan for copies of which `count` fit into the memory: as long as possible up to [`LONGEST`], and as
     /// smooth as possible. There are copies at all marks and, for two intervals between marks, at all shown ticks.
     fn of(count: u64) -> Self {
-        let needed = |plan: &Plan| plan.length / plan.mark + 2 * plan.mark / plan.shown + 3;
+        let needed = |plan: &Plan| plan.length / plan.mark + 2 * plan.mark.div_ceil(plan.shown) + 3;
         for shown in 1..=3 {
             // The number of copies is smallest if marks and shown states are equally many.
             let marks = (8..=LONGEST).map(|mark| Plan {
@@ -122,8 +135,8 @@ impl Plan {
         let mut fitting = lengths.filter(|plan| needed(plan) <= count);
         fitting.next().unwrap_or(Plan {
             mark: 12,
-            shown: 3,
-            length: 30,
+            shown: 4,
+            length: 24,
         })
     }
 }
@@ -148,14 +161,8 @@ pub struct Rewind {
 impl Rewind {
     /// Begins with a round at its start.
     pub fn new(round: &AnyRound) -> Self {
-        let nodes = match round {
-            AnyRound::Plane(round) => nodes_of(round.world()),
-            AnyRound::Space(round) => nodes_of(round.world()),
-        };
-        let per_node = PER_NODE[usize::from(matches!(round, AnyRound::Space(_)))];
-        let count = MEMORY / (nodes * per_node).max(1);
         Self {
-            plan: Plan::of(count as u64),
+            plan: Plan::for_copies_of(round),
             marks: VecDeque::from([AnyState::of(round)]),
             frames: Vec::new(),
             shown: Vec::new(),
@@ -167,6 +174,9 @@ impl Rewind {
     /// Notes the state of the round after a tick.
     pub fn note(&mut self, round: &AnyRound) {
         let tick = round.ticks();
+        if tick.is_multiple_of(LOOK) {
+            self.adapt(round);
+        }
         if tick.is_multiple_of(self.plan.mark) {
             self.marks.push_back(AnyState::of(round));
             let is_old = |mark: Option<&AnyState>| {
@@ -177,6 +187,24 @@ impl Rewind {
                 self.marks.pop_front();
             }
         }
+    }
+
+    /// Makes a new plan if the bodies have more nodes than before, as they get where they tear, and drops marks that are
+    /// closer to each other than it asks for.
+    fn adapt(&mut self, round: &AnyRound) {
+        let plan = Plan::for_copies_of(round);
+        if plan == self.plan {
+            return;
+        }
+        self.plan = plan;
+        let mut last = None;
+        self.marks.retain(|mark| {
+            let is_close = last.is_some_and(|last| mark.tick() < last + plan.mark);
+            if !is_close {
+                last = Some(mark.tick());
+            }
+            !is_close
+        });
     }
 
     /// Returns for how many ticks time can still run back. After a win, and after [`MAX_TICKS`], it is 0.
@@ -264,4 +292,22 @@ impl Rewind {
 fn nodes_of<D: Dim>(world: &World<D>) -> usize {
     let bodies = world.soft_bodies();
     bodies.map(|(_, body)| body.mesh().nodes().count()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plans_keep_to_the_memory() {
+        for count in 8..400 {
+            let plan = Plan::of(count);
+            // Marks, the states of two intervals between marks, and three copies in use.
+            let copies = plan.length / plan.mark + 2 * plan.mark.div_ceil(plan.shown) + 3;
+            assert!(copies <= count.max(11), "{count}: {plan:?}");
+        }
+        let long = Plan::of(90);
+        assert_eq!((long.length, long.shown), (LONGEST, 1));
+        assert!(Plan::of(30).length >= 240 && Plan::of(30).shown <= 3);
+    }
 }

@@ -124,10 +124,15 @@ mod tests {
     #[test]
     fn all_actions_are_offered_in_turn() {
         for (is_space, others) in [
-            (false, vec![ScanAction::Pause]),
+            (false, vec![ScanAction::Rewind, ScanAction::Pause]),
             (
                 true,
-                vec![ScanAction::Raise, ScanAction::Lower, ScanAction::Pause],
+                vec![
+                    ScanAction::Raise,
+                    ScanAction::Lower,
+                    ScanAction::Rewind,
+                    ScanAction::Pause,
+                ],
             ),
         ] {
             let mut scan = Scan::default();
@@ -175,7 +180,7 @@ mod tests {
     #[test]
     fn pause_is_requested_once() {
         let mut scan = Scan::default();
-        scan.pass(false, false, TURN + 0.5, false);
+        scan.pass(false, false, TURN + 1.5, false);
         assert!(scan.pass(true, false, 0.0, false));
         assert!(!scan.pass(true, false, 0.0, false));
     }

@@ -117,14 +117,15 @@ fn thumb_buttons_3d_raise_hand_and_look_deeper() {
 }
 
 #[test]
-fn mouse_shows_only_pause_and_retry_buttons() {
+fn mouse_shows_only_three_buttons() {
     let mut window = window(Files::nowhere());
     start(&mut window, "classic-3d");
     window.hover_at(egui::pos2(500.0, 300.0));
     frames(&mut window, 2);
     let buttons = &window.state().game.controls.buttons;
     let actions = buttons.iter().map(|button| button.action);
-    assert_eq!(actions.collect::<Vec<_>>(), [Action::Pause, Action::Retry]);
+    let expected = [Action::Pause, Action::Retry, Action::Rewind];
+    assert_eq!(actions.collect::<Vec<_>>(), expected);
 }
 
 #[test]

@@ -77,7 +77,7 @@ fn wait_for(window: &mut Window, is_wanted: impl Fn(ScanAction) -> bool) {
         }
         frames(window, 1);
     }
-    panic!("the action is never offered");
+    panic!("the action is never offered on {:?}", screen(window));
 }
 
 #[test]

@@ -65,11 +65,19 @@ macro_rules! level {
 }
 
 /// Levels of the path, in order.
-pub const PATH: [PathLevel; 4] = [
+pub const PATH: &[PathLevel] = &[
+    level!(1, "back-door"),
     level!(1, "under-the-table"),
+    level!(1, "plunger"),
+    level!(2, "halves"),
     level!(2, "ring-and-peg"),
     level!(4, "walk-the-dog"),
+    level!(4, "buttons"),
     level!(5, "make-a-nest"),
+    level!(5, "ghost-twins"),
+    level!(5, "mirror-hands"),
+    level!(5, "mochi"),
+    level!(5, "weightless"),
 ];
 
 impl PathLevel {

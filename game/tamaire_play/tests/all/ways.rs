@@ -14,7 +14,7 @@ const MINUTE: usize = 60 * 60;
 fn for_each_level(check: impl Fn(&PathLevel, Arc<Level>) + Sync) {
     let check = &check;
     thread::scope(|scope| {
-        for level in &PATH {
+        for level in PATH {
             scope.spawn(move || check(level, Arc::new(level.open())));
         }
     });
