@@ -21,7 +21,7 @@ mod watching;
 
 use crate::attract::attract;
 use crate::input::{Action, InputSource};
-use crate::journey::{Journey, Section};
+use crate::journey::{Journey, Lock, Section};
 use crate::platform::{Damage, Dialog, DialogResult, Files, OpenRequest, Sound};
 use crate::records::Records;
 use crate::session::Session;
@@ -239,17 +239,17 @@ impl Game {
             .collect()
     }
 
-    /// Returns the number of stars that are missing until a section opens; 0 if it is open.
-    pub fn missing_stars(&self, section: Section) -> usize {
+    /// Returns what is missing until a section opens; `None` if it is open.
+    pub fn lock_of(&self, section: Section) -> Option<Lock> {
         match section {
-            Section::Chapter(chapter) if !self.settings.open_all => self.journey().missing(chapter),
-            _ => 0,
+            Section::Chapter(chapter) if !self.settings.open_all => self.journey().lock(chapter),
+            _ => None,
         }
     }
 
     /// Starts the level after the chosen one in the order of the list. After the last open one, shows the list.
     pub fn start_next(&mut self) {
-        let open = Section::all().filter(|&section| self.missing_stars(section) == 0);
+        let open = Section::all().filter(|&section| self.lock_of(section).is_none());
         let order: Vec<usize> = open.flat_map(|section| self.levels_of(section)).collect();
         let place = order.iter().position(|&index| index == self.chosen);
         match place.and_then(|place| order.get(place + 1)) {

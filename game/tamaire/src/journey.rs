@@ -63,15 +63,24 @@ impl Journey {
         self.chapters.into_iter().fold(Stars::default(), Stars::and)
     }
 
-    /// Returns the number of stars that are missing in the chapter before, until a chapter opens; 0 if it is open.
-    pub fn missing(&self, chapter: usize) -> usize {
-        let Some(before) = chapter.checked_sub(2) else {
-            return 0;
-        };
-        let Stars { earned, all } = self.chapters[before];
+    /// Returns what is missing until a chapter opens; `None` if it is open. A chapter without levels is skipped.
+    pub fn lock(&self, chapter: usize) -> Option<Lock> {
+        let mut earlier = (1..chapter).rev();
+        let before = earlier.find(|&before| self.chapters[before - 1].all > 0)?;
+        let Stars { earned, all } = self.chapters[before - 1];
         let needed = (all as f32 * OPENING_SHARE).ceil() as usize;
-        needed.saturating_sub(earned)
+        let missing = needed.saturating_sub(earned);
+        (missing > 0).then_some(Lock { missing, before })
     }
+}
+
+/// What is missing until a chapter opens.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct Lock {
+    /// Number of missing stars.
+    pub missing: usize,
+    /// Chapter in which they are missing, counted from 1.
+    pub before: usize,
 }
 
 /// Part of the list of levels.
@@ -127,10 +136,10 @@ mod tests {
         let mut records = Records::default();
         let journey = |records: &Records| Journey::of(levels.iter(), records);
         let start = journey(&records);
-        assert_eq!((start.missing(1), start.stars().earned), (0, 0));
-        assert!((2..=CHAPTERS.len()).all(|chapter| start.missing(chapter) > 0));
+        assert_eq!((start.lock(1), start.stars().earned), (None, 0));
+        assert!((2..=CHAPTERS.len()).all(|chapter| start.lock(chapter).is_some()));
         let first = levels.iter().filter(|level| chapter_of(level) == Some(1));
-        let mut expected = start.missing(2);
+        let mut expected = start.lock(2).unwrap().missing;
         for level in first {
             let outcome = Outcome {
                 ticks: 600,
@@ -146,7 +155,8 @@ mod tests {
             let earned = Stars::of(level, &records).earned;
             assert_eq!(earned, 1 + outcome.wishes(level.game()).len());
             expected = expected.saturating_sub(earned);
-            assert_eq!(journey(&records).missing(2), expected);
+            let found = journey(&records).lock(2).map_or(0, |lock| lock.missing);
+            assert_eq!(found, expected);
         }
         assert_eq!(expected, 0, "a win of each level opens the next chapter");
     }

@@ -19,6 +19,7 @@ fn main() {
         presses: [press; 2],
         squash: 0.0,
         hold: 0.9,
+        rewind: false,
         music: true,
         ..Soundscape::default()
     };

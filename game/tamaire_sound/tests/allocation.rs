@@ -18,6 +18,7 @@ fn playing_allocates_no_memory() {
         presses: [press; 2],
         squash: 0.3,
         hold: 0.7,
+        rewind: false,
         music: true,
         ..Soundscape::default()
     };

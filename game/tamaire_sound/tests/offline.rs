@@ -93,6 +93,7 @@ fn synth_falls_silent_after_all_sounds() {
     let all = Soundscape {
         squash: 0.5,
         hold: 0.9,
+        rewind: false,
         music: true,
         ..pressed(1000.0, 1.0)
     };
@@ -185,6 +186,7 @@ fn soundscape_changes_do_not_click() {
         pressed(1500.0, 1.0),
         Soundscape {
             hold: 1.0,
+            rewind: false,
             ..pressed(0.0, 0.0)
         },
         Soundscape {
@@ -303,6 +305,7 @@ fn non_finite_numbers_are_harmless() {
                 presses: [press; 2],
                 squash: a,
                 hold: b,
+                rewind: false,
                 ..Soundscape::default()
             };
             steady(&mut synth, 0.05, soundscape);

@@ -14,6 +14,7 @@ const SOUNDSCAPE: Soundscape = Soundscape {
     }; 2],
     squash: 0.3,
     hold: 0.7,
+    rewind: false,
     music: true,
     hush: tamaire_sound::Mute::Nothing,
 };

@@ -4,7 +4,7 @@ use super::confirmation::{is_pending, set_pending};
 use super::icons;
 use super::widgets::{dim_background, header_to_open, page, page_rect, words};
 use crate::game::Game;
-use crate::journey::{Journey, Section, Stars};
+use crate::journey::{Journey, Lock, Section, Stars};
 use crate::look::{Maps, Stage};
 use crate::records::{Record, WishName};
 use crate::words::Language;
@@ -29,7 +29,7 @@ const SLIM: f32 = 36.0;
 enum LevelAction {
     Play(usize),
     TakeOut(usize),
-    TellLock(Section),
+    TellLock(Lock),
 }
 
 pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
@@ -56,23 +56,23 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 if places.is_empty() {
                     continue;
                 }
-                let missing = game.missing_stars(section);
-                heading(ui, game, section, &journey, missing);
+                let lock = game.lock_of(section);
+                heading(ui, game, section, &journey, lock);
                 for row in places.chunks(columns as usize) {
                     let shown = ui.horizontal_top(|ui| {
                         let shown = row.iter().map(|&index| {
                             let shown = ui.vertical(|ui| {
-                                let response = match missing {
-                                    0 => tile(ui, game, maps, index, size),
-                                    _ => locked_tile(ui, game, index, size),
+                                let response = match lock {
+                                    None => tile(ui, game, maps, index, size),
+                                    Some(_) => locked_tile(ui, game, index, size),
                                 };
                                 if index == game.chosen {
                                     super::widgets::focus_first(ui, &response);
                                 }
                                 if response.clicked() {
-                                    wanted = Some(match missing {
-                                        0 => LevelAction::Play(index),
-                                        _ => LevelAction::TellLock(section),
+                                    wanted = Some(match lock {
+                                        None => LevelAction::Play(index),
+                                        Some(lock) => LevelAction::TellLock(lock),
                                     });
                                 }
                                 if game.is_own(index) && way_out(ui, game, index, wide).clicked() {
@@ -112,21 +112,17 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             game.take_out(index)
         }
         LevelAction::TakeOut(index) => set_pending(ui, Some(&game.levels[index].id)),
-        LevelAction::TellLock(section) => game.notify(lock_text(game, section)),
+        LevelAction::TellLock(lock) => game.notify(lock_text(game, lock)),
     }
 }
 
 /// Returns how a locked section opens.
-fn lock_text(game: &Game, section: Section) -> String {
-    let before = match section {
-        Section::Chapter(chapter) => chapter - 1,
-        _ => 0,
-    };
-    (game.words().opens_with)(game.missing_stars(section), before)
+fn lock_text(game: &Game, lock: Lock) -> String {
+    (game.words().opens_with)(lock.missing, lock.before)
 }
 
 /// Shows the title of a section, and of a chapter its stars, or how it opens.
-fn heading(ui: &mut Ui, game: &Game, section: Section, journey: &Journey, missing: usize) {
+fn heading(ui: &mut Ui, game: &Game, section: Section, journey: &Journey, lock: Option<Lock>) {
     let (theme, said) = (game.theme(), game.words());
     let (title, stars) = match section {
         Section::First => (said.first_levels.to_string(), None),
@@ -142,10 +138,10 @@ fn heading(ui: &mut Ui, game: &Game, section: Section, journey: &Journey, missin
         Section::More => (said.more_levels.to_string(), None),
         Section::Own => (said.own_levels.to_string(), None),
     };
-    let note = match (missing, stars) {
-        (0, Some(stars)) => (said.stars)(stars.earned, stars.all),
-        (0, None) => String::new(),
-        _ => lock_text(game, section),
+    let note = match (lock, stars) {
+        (Some(lock), _) => lock_text(game, lock),
+        (None, Some(stars)) => (said.stars)(stars.earned, stars.all),
+        (None, None) => String::new(),
     };
     let wide = ui.available_width();
     let (rect, response) = ui.allocate_exact_size(vec2(wide, 34.0), Sense::hover());

@@ -36,6 +36,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 let best = format!("★ {}", said.new_best);
                 line(ui, &best, 21.0, theme.good);
             }
+            if game.bout.round().rewinds() > 0 {
+                line(ui, said.rewound, 18.0, theme.faint);
+            }
             ui.add_space(8.0);
             numbers(ui, &theme, said, &outcome);
             ui.add_space(8.0);

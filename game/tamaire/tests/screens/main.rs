@@ -12,6 +12,7 @@ mod models;
 mod own;
 mod pads;
 mod pictures;
+mod rewind;
 mod shelf;
 mod space;
 mod stand;

@@ -68,6 +68,7 @@ macro_rules! level {
 pub const PATH: &[PathLevel] = &[
     level!(1, "back-door"),
     level!(1, "under-the-table"),
+    level!(1, "hop"),
     level!(1, "plunger"),
     level!(2, "halves"),
     level!(2, "ring-and-peg"),
