@@ -44,8 +44,9 @@ pub fn records_seeds() -> Vec<Vec<u8>> {
             pieces: 12,
             lost: 0,
             broken: 0,
+            torn: 0,
         };
-        reached.note(level, &outcome);
+        reached.note(level, &outcome, u32::from(route == Route::Mix));
     }
     let old = "[classic]\nwishes = [0, 2]\nbest = { squeeze = 9 }\n[\"/home/me/own.toml\"]\nbest = { mix = 9 }\n";
     vec![reached.text().into_bytes(), old.into()]
