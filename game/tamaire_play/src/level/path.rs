@@ -67,13 +67,16 @@ macro_rules! level {
 /// Levels of the path, in order.
 pub const PATH: &[PathLevel] = &[
     level!(1, "back-door"),
-    level!(1, "under-the-table"),
+    level!(1, "dog-with-a-stick"),
     level!(1, "hop"),
+    level!(1, "under-the-table"),
     level!(1, "plunger"),
+    level!(1, "moving-sofa"),
     level!(2, "halves"),
     level!(2, "ring-and-peg"),
     level!(4, "walk-the-dog"),
     level!(4, "buttons"),
+    level!(4, "balloon"),
     level!(5, "make-a-nest"),
     level!(5, "ghost-twins"),
     level!(5, "mirror-hands"),
