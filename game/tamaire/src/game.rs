@@ -432,13 +432,12 @@ impl Game {
         notes.into_iter().for_each(|note| self.notify(note));
     }
 
-    /// Returns the levels that lists show with a thumbnail.
+    /// Returns the levels that lists show with a thumbnail. Thumbnails are made in this order.
     pub fn pictured(&self) -> Vec<Arc<Level>> {
-        self.levels
-            .iter()
-            .cloned()
+        let offered = self.offered.iter().map(|(_, level)| level.clone());
+        offered
+            .chain(self.levels.iter().cloned())
             .chain(self.shelf.levels())
-            .chain(self.offered.iter().map(|(_, level)| level.clone()))
             .collect()
     }
 
