@@ -387,24 +387,19 @@ impl Scene {
 
     /// Returns an error if a switch or a hand has a number that is not in its list.
     fn check_numbers(&self) -> Result<(), FieldError> {
-        let in_list = |number: Option<usize>, count: usize, field: &'static str| {
-            let number = number.unwrap_or(1);
-            let expected = format!("expected 1 to {count}, found {number}");
-            require((1..=count.max(1)).contains(&number), field, expected)
-        };
-        let switches = self.switch.len();
-        let expected = "expected a [[switch]] in the scene";
-        for (index, text) in self.obstacle.iter().enumerate() {
-            let known = switches > 0 || text.switch.is_none();
-            let good = require(known, "switch", expected);
-            let good = good.and_then(|()| in_list(text.switch, switches, "switch"));
-            good.map_err(|wrong| wrong.inside("obstacle", index))?;
-        }
-        for (index, text) in self.joint.iter().enumerate() {
-            let known = switches > 0 || text.switch.is_none();
-            let good = require(known, "switch", expected);
-            let good = good.and_then(|()| in_list(text.switch, switches, "switch"));
-            good.map_err(|wrong| wrong.inside("joint", index))?;
+        let count = self.switch.len();
+        let obstacles = self.obstacle.iter().map(|text| text.switch).enumerate();
+        let joints = self.joint.iter().map(|text| text.switch).enumerate();
+        let obstacles = obstacles.map(|text| ("obstacle", text));
+        let joints = joints.map(|text| ("joint", text));
+        for (list, (index, switch)) in obstacles.chain(joints) {
+            let expected = match (count, switch) {
+                (_, None) => continue,
+                (0, _) => "expected a [[switch]] in the scene".to_string(),
+                (_, Some(number)) => format!("expected 1 to {count}, found {number}"),
+            };
+            let good = switch.is_some_and(|number| (1..=count).contains(&number));
+            require(good, "switch", expected).map_err(|wrong| wrong.inside(list, index))?;
         }
         for (index, text) in self.hand.iter().enumerate() {
             let Some(leader) = text.follows else {

@@ -235,13 +235,8 @@ impl<D: Dim> Machinery<D> {
         if self.fields.is_empty() {
             return world.step();
         }
-        let fields = &self.fields;
-        let sum = |position: D::Vector| {
-            let fields = fields.iter().map(|field| field.at(position));
-            fields.fold(D::Vector::ZERO, |sum, one| sum + one)
-        };
         world.step_with(&mut Hooks {
-            field: Some(&sum),
+            field: Some(&|position| self.field_at(position)),
             after_substep: None,
         })
     }
