@@ -28,6 +28,18 @@ pub enum Cue {
         /// Position, from −1 at the left edge of the picture to 1 at the right.
         x: f32,
     },
+    /// A rope, spring or pin broke.
+    Snap {
+        /// Position, from −1 at the left edge of the picture to 1 at the right.
+        x: f32,
+    },
+    /// A switch was pressed or released.
+    Switch {
+        /// Whether it was pressed.
+        is_on: bool,
+        /// Position, from −1 at the left edge of the picture to 1 at the right.
+        x: f32,
+    },
     /// The round was won.
     Won(Route),
     /// An action in a menu.
@@ -59,6 +71,11 @@ pub enum Menu {
 }
 
 impl Cue {
+    /// Returns whether the cue is a sound of the world, of which there can be many, not one of the game around it.
+    pub(crate) fn is_of_world(self) -> bool {
+        !matches!(self, Self::Won(_) | Self::Menu(_))
+    }
+
     /// Returns the cue with all numbers clamped to their ranges.
     pub(crate) fn cleaned(self) -> Self {
         let place = |x| clean(x, -1.0, 1.0);
@@ -75,6 +92,8 @@ impl Cue {
                 speed: clean(speed, 0.0, 1e4),
                 x: place(x),
             },
+            Self::Snap { x } => Self::Snap { x: place(x) },
+            Self::Switch { is_on, x } => Self::Switch { is_on, x: place(x) },
             Self::Won(_) | Self::Menu(_) => self,
         }
     }

@@ -45,9 +45,9 @@ impl Message {
 
     /// Records a call of [`Synth::play`].
     pub fn play(&mut self, cue: Cue) {
-        let kept_free = match cue {
-            Cue::Thud { .. } | Cue::Tear { .. } | Cue::Crumb { .. } => FOR_MENUS,
-            Cue::Won(_) | Cue::Menu(_) => FOR_WHAT_LASTS,
+        let kept_free = match cue.is_of_world() {
+            true => FOR_MENUS,
+            false => FOR_WHAT_LASTS,
         };
         self.put(&Entry::Cue(cue), kept_free);
     }
@@ -105,6 +105,7 @@ mod tests {
         hold: 0.7,
         rewind: true,
         music: true,
+        song: 3,
         hush: Mute::Nothing,
     };
 
@@ -115,7 +116,7 @@ mod tests {
         interface: 0.3,
     };
 
-    const CUES: [Cue; 9] = [
+    const CUES: [Cue; 11] = [
         Cue::Thud {
             impulse: 30.0,
             x: -1.0,
@@ -125,6 +126,11 @@ mod tests {
             x: 1.0,
         },
         Cue::Crumb { speed: 2.0, x: 0.0 },
+        Cue::Snap { x: 0.5 },
+        Cue::Switch {
+            is_on: true,
+            x: -0.5,
+        },
         Cue::Won(Route::Squeeze),
         Cue::Won(Route::Shave),
         Cue::Won(Route::Mix),

@@ -10,6 +10,8 @@ pub(crate) fn start(cue: Cue, noise: &mut Noise, voices: &mut Voices) {
         Cue::Thud { impulse, x } => thud(impulse, x, noise, voices),
         Cue::Tear { energy, x } => tear(energy, x, noise, voices),
         Cue::Crumb { speed, x } => crumb(speed, x, noise, voices),
+        Cue::Snap { x } => snap(x, noise, voices),
+        Cue::Switch { is_on, x } => switch(is_on, x, voices),
         Cue::Won(route) => jingle(route, voices),
         Cue::Menu(menu) => blip(menu, voices),
     }
@@ -110,6 +112,36 @@ fn crumb(speed: f32, x: f32, noise: &mut Noise, voices: &mut Voices) {
         sharpness: 2.0,
         ..Grain::default()
     });
+}
+
+/// Twang of a string that breaks: a bright note that falls and trembles out, after a click.
+fn snap(x: f32, noise: &mut Noise, voices: &mut Voices) {
+    let pitch = noise.between(300.0, 360.0);
+    for (high, gain, decay) in [(1.0, 0.4, 0.22), (2.01, 0.2, 0.12), (5.0, 0.16, 0.02)] {
+        voices.start(Grain {
+            x,
+            attack: 0.001,
+            decay,
+            gain,
+            pitch: [high * pitch, 0.72 * high * pitch],
+            glide: 0.12,
+            edge: 0.5,
+            ..Grain::default()
+        });
+    }
+}
+
+/// Click of a switch: two wooden taps, up when it is pressed and down when it is released.
+fn switch(is_on: bool, x: f32, voices: &mut Voices) {
+    let notes = if is_on { [67.0, 74.0] } else { [74.0, 67.0] };
+    for (delay, number) in [0.0, 0.08].into_iter().zip(notes) {
+        let tap = Grain {
+            x,
+            ..bell(number, delay, 0.3, 0.07)
+        };
+        voices.start(tap);
+        voices.start(strike(tap));
+    }
 }
 
 /// Notes of a jingle: start time [s] and MIDI note number of each.

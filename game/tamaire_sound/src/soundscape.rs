@@ -17,6 +17,8 @@ pub struct Soundscape {
     pub rewind: bool,
     /// Whether background music plays.
     pub music: bool,
+    /// Song of the background music, 0 to 5. A new one begins with the next chord.
+    pub song: u8,
     /// Sounds that are muted for a while.
     pub hush: Mute,
 }

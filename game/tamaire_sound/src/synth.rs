@@ -157,6 +157,7 @@ impl Synth {
             hold,
             rewind,
             music,
+            song,
             hush,
         } = self.soundscape;
         for (squeak, press) in self.squeaks.iter_mut().zip(&presses) {
@@ -165,6 +166,7 @@ impl Synth {
         self.wobble.hear(squash);
         self.chord.hear(hold);
         self.shimmer.hear(rewind);
+        self.music.hear(song);
         let volumes = &self.volumes;
         // Squares the volume, so that half of the slider sounds about half as loud.
         let loudness = |is_on, volume| {

@@ -5,7 +5,12 @@ use tamaire_sound::{Cue, Menu, Mute, Press, Route, Soundscape, Synth, Volumes};
 const RATE: u32 = 48_000;
 
 /// One loud cue of each kind.
-const CUES: [Cue; 9] = [
+const CUES: [Cue; 11] = [
+    Cue::Snap { x: 0.5 },
+    Cue::Switch {
+        is_on: true,
+        x: -0.5,
+    },
     Cue::Thud {
         impulse: 30.0,
         x: -1.0,
@@ -295,6 +300,8 @@ fn non_finite_numbers_are_harmless() {
             synth.play(Cue::Thud { impulse, x });
             synth.play(Cue::Tear { energy, x });
             synth.play(Cue::Crumb { speed, x });
+            synth.play(Cue::Snap { x });
+            synth.play(Cue::Switch { is_on: true, x });
             synth.set_volumes(&Volumes {
                 master: a,
                 effects: b,
@@ -416,6 +423,34 @@ fn sound_of_a_hanging_game_ends() {
     synth.render(&mut samples);
     assert!(loudness(&samples[..RATE as usize / 2]) > 0.01);
     assert!(loudness(&samples[3 * RATE as usize..]) < 1e-4);
+}
+
+#[test]
+fn each_song_sounds_different_and_none_is_louder_than_the_others() {
+    let songs: Vec<Vec<f32>> = (0..=5)
+        .map(|song| {
+            let mut synth = Synth::new(RATE);
+            let music = Soundscape {
+                music: true,
+                song,
+                ..Soundscape::default()
+            };
+            steady(&mut synth, 20.0, music)
+        })
+        .collect();
+    let loud: Vec<f32> = songs.iter().map(|samples| loudness(samples)).collect();
+    for (song, samples) in songs.iter().enumerate() {
+        assert!((0.5..2.0).contains(&(loud[song] / loud[0])), "{loud:?}");
+        assert!(songs[..song].iter().all(|other| other != samples), "{song}");
+    }
+    // Another number than those of the songs plays the last one.
+    let mut synth = Synth::new(RATE);
+    let music = Soundscape {
+        music: true,
+        song: 200,
+        ..Soundscape::default()
+    };
+    assert_eq!(steady(&mut synth, 20.0, music), songs[5]);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Sounds of the game: those that a tick triggers, and continuous ones.
 
 use super::{Game, Screen};
+use crate::journey::chapter_of;
 use app_shell::View;
 use fuwafuwa::{
     Contact, Dim, DimVector, Event, MotionType, ObjectRef, PieceId, SoftBodyHandle, Vec3,
@@ -34,6 +35,7 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
         hold: (round.progress().held / hold).min(1.0),
         rewind: game.bout.session.is_rewinding(),
         music: true,
+        song: song(game),
         hush: match game.screen() {
             _ if game.is_away => Mute::Everything,
             Screen::Paused | Screen::Title => Mute::World,
@@ -41,6 +43,43 @@ pub(super) fn soundscape(game: &Game) -> Soundscape {
             _ => Mute::Nothing,
         },
     }
+}
+
+/// Returns the song: each chapter of the path has its own.
+fn song(game: &Game) -> u8 {
+    let level = game.bout.round().level();
+    let chapter = match game.screen() {
+        Screen::Title | Screen::Ending => None,
+        _ => chapter_of(level),
+    };
+    chapter.map_or(0, |chapter| chapter as u8)
+}
+
+/// Returns the sounds of the switches that were pressed or released since `before`, and updates it.
+pub(super) fn switched(round: &AnyRound, before: &mut Vec<bool>, view: Option<View>) -> Vec<Cue> {
+    match round {
+        AnyRound::Plane(round) => switched_of(round, before, view),
+        AnyRound::Space(round) => switched_of(round, before, view),
+    }
+}
+
+fn switched_of<D: Dim>(round: &Round<D>, before: &mut Vec<bool>, view: Option<View>) -> Vec<Cue> {
+    let switches: Vec<_> = round.machinery().switches().collect();
+    before.resize(switches.len(), false);
+    let changed = switches
+        .into_iter()
+        .zip(before)
+        .filter(|((_, is_on), was_on)| is_on != *was_on);
+    let heard = changed.map(|((region, is_on), was_on)| {
+        *was_on = is_on;
+        let [low, high] = region.bounds();
+        let middle = (low.to_vec3() + high.to_vec3()) * 0.5;
+        Cue::Switch {
+            is_on,
+            x: across(view, middle),
+        }
+    });
+    heard.collect()
 }
 
 /// Returns the sounds of the last tick of a round. `view` gives their stereo position.
@@ -92,6 +131,8 @@ fn cues_of<D: Dim>(round: &Round<D>, view: Option<View>) -> Vec<Cue> {
                     cues.push(Cue::Crumb { speed, x });
                 }
             }
+            // The joint is gone, and with it its position.
+            Event::JointBroke { .. } => cues.push(Cue::Snap { x: 0.0 }),
             _ => {}
         }
     }

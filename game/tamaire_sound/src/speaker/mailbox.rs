@@ -52,9 +52,9 @@ impl Mailbox {
     /// Adds a cue. Drops the cue if the mailbox is full. Also drops the cue if there is no device, because it
     /// would be heard too late.
     pub fn put(&mut self, cue: Cue) {
-        let most = match cue {
-            Cue::Thud { .. } | Cue::Tear { .. } | Cue::Crumb { .. } => MOST_CUES_OF_THE_WORLD,
-            Cue::Won(_) | Cue::Menu(_) => MOST_CUES,
+        let most = match cue.is_of_world() {
+            true => MOST_CUES_OF_THE_WORLD,
+            false => MOST_CUES,
         };
         if self.trouble.is_none() && self.cues.len() < most {
             self.cues.push(cue);
