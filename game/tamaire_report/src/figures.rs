@@ -2,6 +2,7 @@
 //! file format and must not be changed.
 
 use crate::Day;
+use crate::spread::thousandth;
 use serde::Serialize;
 use tamaire_logbook::Id;
 use tamaire_play::Route;
@@ -136,6 +137,8 @@ pub struct LevelFigures {
     pub level_hash: String,
     /// Rounds by result.
     pub rounds: Wins,
+    /// Rounds for each won round; `None` without a win.
+    pub tries_per_win: Option<f64>,
     /// Median playing time of the level's won rounds [s]. For an even count, the lower of the two middle
     /// values.
     pub median_win: Option<f64>,
@@ -305,6 +308,12 @@ impl Wins {
     /// Returns the number of won rounds.
     pub fn won(&self) -> u64 {
         self.squeeze + self.shave + self.mix
+    }
+
+    /// Returns the number of rounds for each won round, to a thousandth; `None` without a win.
+    pub fn tries_per_win(&self) -> Option<f64> {
+        let won = self.won();
+        (won > 0).then(|| thousandth(self.all as f64 / won as f64))
     }
 
     /// Returns the numbers of rounds won by squeezing, by shaving and by a mix of both, and of rounds not

@@ -166,7 +166,13 @@ fn first_win(words: &Words, figures: &Figures) -> String {
 }
 
 fn by_level(words: &Words, figures: &Figures, legend: &str) -> String {
-    let row = |level: &LevelFigures| row(words, &title_of(words, level), level.rounds);
+    let row = |level: &LevelFigures| {
+        let count = (words.level_rounds)(level.rounds.all, level.tries_per_win);
+        (
+            format!("{} ({count})", title_of(words, level)),
+            level.rounds.parts(),
+        )
+    };
     let rows: Vec<_> = figures.levels.iter().take(LEVELS).map(row).collect();
     shares_if_any(&words.by_level, legend, &rows, words.by_level.caption)
 }

@@ -262,6 +262,7 @@ impl LevelTally {
             level,
             level_hash: format!("{hash:016x}"),
             rounds: tally.rounds,
+            tries_per_win: tally.rounds.tries_per_win(),
             median_win: median(won_in.collect()),
             hands: None,
         }

@@ -37,6 +37,8 @@ pub struct Words {
     pub tries: [&'static str; 4],
     /// Formats a number of rounds.
     pub rounds: fn(u64) -> String,
+    /// Number of rounds of a level, and of rounds for each won round.
+    pub level_rounds: fn(u64, Option<f64>) -> String,
     /// Comparison with the observations of 2004.
     pub reading: Reading,
     /// Plot of visits and rounds by hour.

@@ -37,6 +37,10 @@ pub static ENGLISH: Words = Words {
     route,
     tries: ["1st round", "2nd round", "3rd round", "4th round and later"],
     rounds: |count| plural(count, "round"),
+    level_rounds: |count, tries| match tries {
+        Some(tries) => format!("{}, {tries:.1} per win", plural(count, "round")),
+        None => format!("{}, no win", plural(count, "round")),
+    },
     reading: Reading {
         title: "Compared with 2004",
         then: "In 2004, visitors of a media festival were only told to put the body into the region between three bars. Two \
@@ -75,7 +79,8 @@ pub static ENGLISH: Words = Words {
     by_level: Plot {
         title: "Results by level",
         axes: ["share of the level's rounds [%]", ""],
-        caption: "Each bar shows all rounds of a level, split by result. The most played level comes first. Four digits after a \
+        caption: "Each bar shows all rounds of a level, split by result. In brackets: all rounds, and how many \
+            there were for each won round. The most played level comes first. Four digits after a \
             name mark an easier or another version of the level.",
     },
     by_try: Plot {

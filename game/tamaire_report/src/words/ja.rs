@@ -31,6 +31,10 @@ pub static JAPANESE: Words = Words {
     route,
     tries: ["1回目", "2回目", "3回目", "4回目以降"],
     rounds: |count| format!("{}ラウンド", grouped(count)),
+    level_rounds: |count, tries| match tries {
+        Some(tries) => format!("{}ラウンド、クリア1回に{tries:.1}", grouped(count)),
+        None => format!("{}ラウンド、クリアなし", grouped(count)),
+    },
     reading: Reading {
         title: "2004年との比較",
         then: "2004年のメディア祭では、「3本の棒に囲まれた領域の中に入れる」とだけ伝えて、遊んでもらいました。すると操作は\
@@ -65,7 +69,7 @@ pub static JAPANESE: Words = Words {
     by_level: Plot {
         title: "ステージごとの結果",
         axes: ["ラウンドに占める割合［％］", ""],
-        caption: "1本の帯が、1つのステージの全ラウンドです。ラウンドの多い順に並んでいます。おたすけを使ったステージや、\
+        caption: "1本の帯が、1つのステージの全ラウンドです。かっこの中は、全ラウンドの数と、クリア1回あたりのラウンドの数です。ラウンドの多い順に並んでいます。おたすけを使ったステージや、\
             版の違うステージには、名前の後に4桁の番号がついています。",
     },
     by_try: Plot {

@@ -164,6 +164,13 @@ fn compare(figures: &Figures, told: &[Told]) {
         };
         let of_it: Vec<&Round> = rounds.iter().filter(is_of).copied().collect();
         assert_eq!(level.rounds, wins(of_it.iter().copied()));
+        let won_count = won(&of_it).len();
+        match level.tries_per_win {
+            Some(tries) => assert!(
+                (tries * won_count as f64 - of_it.len() as f64).abs() < 1e-3 * won_count as f64
+            ),
+            None => assert_eq!(won_count, 0),
+        }
         let seconds = won(&of_it)
             .iter()
             .map(|round| f64::from(round.seconds))
