@@ -1,9 +1,11 @@
 //! Real-time control of a round that is played by people or replayed.
 
+mod guide;
 mod reel;
 
 use app_shell::{Clock, Pace};
 use fuwafuwa::DEFAULT_TICK;
+use guide::Guide;
 use reel::Reel;
 use std::sync::Arc;
 use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError, Rewind};
@@ -17,6 +19,8 @@ pub struct Session {
     back: Option<f32>,
     /// Earlier round of the same level, to race against.
     ghost: Option<Playback>,
+    /// Ghost that shows the first move.
+    guide: Option<Guide>,
     pace: Pace,
     /// Error that stopped a replay or a ghost.
     complaint: Option<ReplayError>,
@@ -55,6 +59,7 @@ impl Session {
             rewind: None,
             back: None,
             ghost: None,
+            guide: None,
             pace: Pace::default(),
             complaint: None,
         }
@@ -63,6 +68,12 @@ impl Session {
     /// Adds a ghost: a recorded round of the level to race against.
     pub fn against(mut self, ghost: Playback) -> Self {
         self.ghost = Some(ghost);
+        self
+    }
+
+    /// Removes the earlier states, so that time cannot run back.
+    pub fn without_rewind(mut self) -> Self {
+        self.rewind = None;
         self
     }
 
@@ -84,9 +95,20 @@ impl Session {
         }
     }
 
-    /// Returns the round of the ghost, if any.
+    /// Returns the round of the ghost, if any: one to race against, or one that shows the first move.
     pub fn ghost(&self) -> Option<&AnyRound> {
-        self.ghost.as_ref().map(Playback::round)
+        let raced = self.ghost.as_ref().map(Playback::round);
+        raced.or_else(|| self.guide.as_ref().map(Guide::round))
+    }
+
+    /// Lets a ghost show the first move of the level. Returns whether it does: the level has a hint, people play
+    /// the round, and there is no other ghost.
+    pub fn show_first_move(&mut self) -> bool {
+        if self.is_played() && self.ghost().is_none() {
+            self.guide = Guide::new(self.round().level());
+            return self.guide.is_some();
+        }
+        false
     }
 
     /// Whether people play the round.
@@ -222,11 +244,31 @@ impl Session {
             return self.pace.forget();
         }
         self.pace.begin(seconds.into());
+        let first = clock.now();
+        let mut ticks = 0;
         while self.pace.is_due() {
             let began = clock.now();
             self.tick(&mut wish);
             seen(self.round());
             self.pace.note(clock.now() - began);
+            ticks += 1;
+        }
+        self.guide(ticks, || clock.now() - first < BUDGET);
+    }
+
+    /// Lets the ghost that shows the first move play `ticks` ticks. After the first one, it waits for the next
+    /// frame when there is no `time` left.
+    fn guide(&mut self, ticks: usize, time: impl Fn() -> bool) {
+        for tick in 0..ticks {
+            let Some(guide) = &mut self.guide else {
+                return;
+            };
+            if tick > 0 && !time() {
+                return;
+            }
+            if !guide.step() {
+                self.guide = None;
+            }
         }
     }
 
@@ -256,7 +298,8 @@ impl Session {
     }
 }
 
-/// Time per frame in which earlier states are computed while time runs back [s].
+/// Time per frame in which earlier states are computed while time runs back, and after which the ghost that shows the
+/// first move waits [s].
 const BUDGET: f64 = 0.012;
 
 /// Maximum number of ticks that a ghost plays during a tick of the player [ticks]. A ghost that waited for its

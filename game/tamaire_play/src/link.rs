@@ -64,9 +64,9 @@ const END: char = 'z';
 #[derive(Clone, Debug, PartialEq)]
 pub enum Link {
     /// A round to watch or to race.
-    Round(Replay),
+    Round(Box<Replay>),
     /// A level to play.
-    Level(Level),
+    Level(Box<Level>),
 }
 
 impl Link {
@@ -91,8 +91,8 @@ impl Link {
     /// Decodes the content of a fragment.
     fn of(kind: char, bytes: &[u8]) -> Result<Self, LinkError> {
         match kind {
-            ROUND => SentRound::read(bytes).map(Self::Round),
-            _ => SentLevel::read(bytes).map(Self::Level),
+            ROUND => SentRound::read(bytes).map(Box::new).map(Self::Round),
+            _ => SentLevel::read(bytes).map(Box::new).map(Self::Level),
         }
     }
 }

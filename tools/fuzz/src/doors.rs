@@ -136,9 +136,9 @@ pub fn link(bytes: &[u8]) -> bool {
         }
     }
     match read {
-        Link::Round(replay) => watch(replay),
+        Link::Round(replay) => watch(*replay),
         Link::Level(level) => {
-            begin(level);
+            begin(*level);
             true
         }
     }

@@ -1,7 +1,7 @@
 //! Rules of the game in a scene file.
 
 use super::error::{FieldError, require};
-use super::shapes::{BoxText, ShapeChoice};
+use super::shapes::{BoxText, ShapeChoice, check_path};
 use fuwafuwa::{Dim, Shape};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -46,6 +46,10 @@ pub struct GameText {
     /// Optional goals of the level.
     #[serde(default)]
     pub wish: Vec<WishText>,
+    /// First move, which the game shows to a player who is stuck: points of the path of the first hand, as in
+    /// [`HandText::path`](super::HandText::path). At most 15 s.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub hint: Vec<[f32; 4]>,
 }
 
 /// One of several regions that must be filled.
@@ -136,6 +140,9 @@ pub enum RouteText {
 /// Maximum number of optional goals in a level: the result screen lists them all.
 const MAX_WISHES: usize = 8;
 
+/// Maximum duration of the first move that a level shows [s].
+const MAX_HINT: f32 = 15.0;
+
 /// Maximum number of baskets in a level.
 const MAX_BASKETS: usize = 8;
 
@@ -199,6 +206,9 @@ impl GameText {
             let checked = required.check(bodies, joints);
             checked.map_err(|wrong| wrong.under("require"))?;
         }
+        check_path::<D>("hint", &self.hint)?;
+        let end = self.hint.last().map_or(0.0, |end| end[0]);
+        require(end <= MAX_HINT, "hint", expected("15 s at most", end))?;
         Ok(regions)
     }
 

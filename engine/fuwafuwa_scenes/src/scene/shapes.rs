@@ -203,7 +203,7 @@ impl ObstacleText {
         }
         let bounded = !matches!(shape, Shape::HalfSpace { .. });
         require(bounded, "half_space", "expected a bounded shape: it moves")?;
-        check_path::<D>(&self.path)?;
+        check_path::<D>("path", &self.path)?;
         let turning = self.angular_velocity.unwrap_or_default();
         vector_of::<D>("pivot", self.pivot.unwrap_or_default())?;
         let finite = turning.iter().all(|speed| speed.is_finite());
@@ -265,14 +265,14 @@ impl ObstacleText {
     }
 }
 
-/// Checks the times and places of a path.
-fn check_path<D: Dim>(path: &[[f32; 4]]) -> Result<(), FieldError> {
+/// Checks the times and places of a path, which is in the field `name`.
+pub(super) fn check_path<D: Dim>(name: &str, path: &[[f32; 4]]) -> Result<(), FieldError> {
     let found = path.len();
     let expected = format!("expected {MAX_POINTS} points at most, found {found}");
-    require(found <= MAX_POINTS, "path", expected)?;
+    require(found <= MAX_POINTS, name, expected)?;
     let mut before = 0.0;
     for (index, &[seconds, x, y, z]) in path.iter().enumerate() {
-        let field = format!("path.{}", index + 1);
+        let field = format!("{name}.{}", index + 1);
         let expected = format!("expected a time of {before} s or more, found {seconds}");
         require(seconds >= before && seconds.is_finite(), &field, expected)?;
         vector_of::<D>(&field, [x, y, z])?;
@@ -341,7 +341,7 @@ impl HandText {
             "path",
             "expected a point [seconds, x, y, z] at least",
         )?;
-        check_path::<D>(&self.path)?;
+        check_path::<D>("path", &self.path)?;
         let good = self.follows.is_none() || self.path.len() == 1;
         let expected = "expected one point: the hand follows another one";
         require(good, "path", expected)?;

@@ -477,6 +477,15 @@ fn build_limits_length_of_lists() {
             format!("dim = 2\n[game]\nname = {{ en = \"a\" }}\n{wish}"),
             "game, wish: expected 8 at most, found 9",
         ),
+        (
+            "dim = 2\n[game]\nname = { en = \"a\" }\nhint = [[16.0, 0.0, 0.0, 0.0]]\n".into(),
+            "game, hint: expected 15 s at most, found 16",
+        ),
+        (
+            "dim = 2\n[game]\nname = { en = \"a\" }\nhint = [[1.0, 0.0, 0.0, 0.0], [0.5, 0.0, 0.0, 0.0]]\n"
+                .into(),
+            "game, hint.2: expected a time of 1 s or more, found 0.5",
+        ),
     ] {
         let scene = Scene::read("toy.toml", &text, &[]).unwrap();
         let built = scene.build::<Dim2>().map(drop);

@@ -16,6 +16,8 @@ const PATIENCE: f32 = 20.0;
 const PROGRESS: f32 = 0.02;
 /// Number of rounds of the same level given up one after the other, from which on a player counts as stuck.
 const FAILURES: usize = 2;
+/// Playing time after which a ghost shows the first move, and again each time [s].
+const UNTIL_FIRST_MOVE: f32 = 60.0;
 
 /// Progress of the tutorial.
 #[derive(Clone, Debug, Default)]
@@ -33,6 +35,8 @@ pub struct Tutorial {
     waiting: f32,
     /// Number of rounds of the same level that the player has given up.
     failures: usize,
+    /// Playing time since the round began or the first move was last shown [s].
+    unshown: f32,
 }
 
 /// Observation of a frame.
@@ -58,10 +62,20 @@ impl Tutorial {
         (self.seconds, self.best, self.waiting) = (0.0, 0.0, 0.0);
         self.from = Default::default();
         let is_stuck = self.failures >= FAILURES;
+        self.unshown = if is_stuck { UNTIL_FIRST_MOVE } else { 0.0 };
         if is_stuck {
             self.done = [false; 3];
         }
         is_stuck
+    }
+
+    /// Returns whether it is time to show the first move of the level; then the time begins anew.
+    pub(super) fn wants_first_move(&mut self) -> bool {
+        let wants = self.unshown >= UNTIL_FIRST_MOVE;
+        if wants {
+            self.unshown = 0.0;
+        }
+        wants
     }
 
     /// Returns whether to show each of the three hints: move the hand, raise the hand, turn the camera.
@@ -84,6 +98,7 @@ impl Tutorial {
             return false;
         };
         self.waiting += seen.seconds;
+        self.unshown += seen.seconds;
         if within > self.best + PROGRESS {
             (self.best, self.waiting) = (within, 0.0);
         }
@@ -155,8 +170,30 @@ mod tests {
         see(&mut lesson, [0.5; 3], 1.0, 1.0);
         assert!(!lesson.begin(true));
         assert_eq!(lesson.missing(), [false; 3]);
+        assert!(!lesson.wants_first_move());
         assert!(lesson.begin(true));
         assert_eq!(lesson.missing(), [true; 3]);
+        assert!(lesson.wants_first_move());
+        assert!(!lesson.wants_first_move(), "once");
         assert!(!lesson.begin(false), "another level");
+        assert!(!lesson.wants_first_move());
+    }
+
+    #[test]
+    fn first_move_is_due_after_each_minute() {
+        let mut lesson = Tutorial::default();
+        lesson.begin(false);
+        let mut wanted = Vec::new();
+        for second in 0..150 {
+            let seen = Seen {
+                within: Some(0.01 * second as f32),
+                has_begun: second >= 20,
+                seconds: 1.0,
+                ..Seen::default()
+            };
+            lesson.see(seen);
+            wanted.extend(lesson.wants_first_move().then_some(second));
+        }
+        assert_eq!(wanted, [79, 139]);
     }
 }

@@ -3,6 +3,7 @@
 use super::lesson::Seen;
 use super::{Game, Screen};
 use crate::input::{Action, InputMethod};
+use crate::records::Record;
 use fuwafuwa::Vec3;
 
 impl Game {
@@ -56,9 +57,83 @@ impl Game {
         if is_stuck {
             self.bout.effects.remind();
         }
+        let is_won = |record: &Record| record.is_won();
+        let is_known = self
+            .records
+            .of(&self.bout.round().level().id)
+            .is_some_and(is_won);
+        let is_due = is_open && !is_known && self.bout.lesson.wants_first_move();
+        if is_due && self.bout.session.show_first_move() {
+            self.notify(self.words().first_move.to_string());
+        }
     }
 
     fn is_played_in_space(&self) -> bool {
         self.screen() == Screen::Play && self.bout.is_played_in_space()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::journey::Lock;
+    use crate::platform::{Files, Sound};
+    use app_shell::Pads;
+    use tamaire_play::{AnyRound, InputFrame};
+
+    fn game() -> Game {
+        Game::new(Files::nowhere(), Sound::none(), Pads::none())
+    }
+
+    fn place(game: &Game, id: &str) -> usize {
+        let place = game.levels.iter().position(|level| level.id == id);
+        place.expect("the level is built in")
+    }
+
+    /// Gives the current round up after a push.
+    fn give_up(game: &mut Game) {
+        let push = |round: &AnyRound| InputFrame::towards(round.start(0) + Vec3::splat(0.2));
+        let session = &mut game.bout.session;
+        session.advance(0.02, &game.clock, push, |_| {});
+        game.retry();
+    }
+
+    #[test]
+    fn ghost_shows_the_first_move_after_two_failures() {
+        let mut game = game();
+        let hop = place(&game, "hop");
+        game.start(hop);
+        let is_shown = |game: &mut Game| {
+            game.update(0.02);
+            game.bout.session.ghost().is_some()
+        };
+        assert!(!is_shown(&mut game));
+        give_up(&mut game);
+        assert!(!is_shown(&mut game));
+        give_up(&mut game);
+        assert!(is_shown(&mut game));
+        let said = game.words().first_move;
+        assert!(game.notices.iter().any(|notice| notice.text == said));
+        // A level without a hint has no ghost.
+        let classic = place(&game, "classic");
+        game.start(classic);
+        give_up(&mut game);
+        give_up(&mut game);
+        assert!(!is_shown(&mut game));
+    }
+
+    #[test]
+    fn calm_mode_closes_levels_in_which_things_must_tear() {
+        let mut game = game();
+        let [hop, halves] = ["hop", "halves"].map(|id| place(&game, id));
+        let is_starred = |lock| matches!(lock, Some(Lock::Stars { .. }));
+        assert!(is_starred(game.lock_of_level(halves)));
+        game.settings.calm = true;
+        assert_eq!(game.lock_of_level(halves), Some(Lock::Calm));
+        let nest = place(&game, "make-a-nest");
+        assert_eq!(game.lock_of_level(nest), None, "all chapters are open");
+        game.start(hop);
+        let materials = game.bout.round().level().scene().materials();
+        assert!({ materials.iter() }.all(|material| material.strength.is_infinite()));
     }
 }

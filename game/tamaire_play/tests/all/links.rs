@@ -35,14 +35,14 @@ fn played(level: &Arc<Level>, kind: BotKind, seed: u64, ticks: usize) -> Replay 
 
 fn read_round(text: &str) -> Replay {
     match Link::read(text).unwrap() {
-        Link::Round(replay) => replay,
+        Link::Round(replay) => *replay,
         Link::Level(level) => panic!("a level: {}", level.id),
     }
 }
 
 fn read_level(text: &str) -> Level {
     match Link::read(text).unwrap() {
-        Link::Level(level) => level,
+        Link::Level(level) => *level,
         Link::Round(replay) => panic!("a round in {}", replay.level),
     }
 }

@@ -1,11 +1,12 @@
 //! The levels of the path: their ways win, a straight push does not.
 
 use fuwafuwa::Vec3;
+use fuwafuwa_scenes::scene::point_at;
 use std::sync::Arc;
 use std::thread;
 use tamaire_play::bot::StraightPush;
 use tamaire_play::level::{LevelError, PATH, PathLevel};
-use tamaire_play::{AnyRound, InputFrame, Level, Link, Replay};
+use tamaire_play::{AnyRound, InputFrame, Level, Link, Replay, Way};
 
 /// Time limit of a round: a minute [ticks].
 const MINUTE: usize = 60 * 60;
@@ -48,6 +49,22 @@ fn every_level_has_two_ways_that_win_as_stated() {
         };
         assert!(different([0, 1]), "{}: both ways are alike", known.id);
     });
+}
+
+#[test]
+fn every_hint_is_the_beginning_of_a_way() {
+    for level in PATH {
+        let (hint, ways) = (level.open().game().hint.clone(), level.ways().way);
+        assert!(hint.len() >= 2, "{}: no hint", level.id);
+        let is_on = |way: &Way, &[seconds, x, y, z]: &[f32; 4]| {
+            let at = Vec3::from(point_at(&way.path, seconds));
+            (at - Vec3::new(x, y, z)).length() < 0.005
+        };
+        let is_beginning = ways
+            .iter()
+            .any(|way| hint.iter().all(|point| is_on(way, point)));
+        assert!(is_beginning, "{}: {hint:?}", level.id);
+    }
 }
 
 #[test]
