@@ -5,6 +5,7 @@ mod bout;
 mod controls;
 mod drawing;
 mod ended;
+mod ending;
 mod forces;
 mod heard;
 mod keep;
@@ -31,6 +32,7 @@ use app_shell::{Clock, Forces, Pads, Theme};
 pub use bout::CurrentRound;
 pub use controls::{Controls, ScreenButton};
 use drawing::DrawingWatch;
+pub use ending::Ending;
 use fuwafuwa::DEFAULT_TICK;
 pub use notices::{Notice, Notices};
 pub use public::{EndedRound, PublicMode};
@@ -58,6 +60,8 @@ pub struct Game {
     pub levels: Vec<Arc<Level>>,
     /// Index of the chosen level in [`Self::levels`].
     pub chosen: usize,
+    /// Progress of the ending.
+    pub ending: Ending,
     /// Current round.
     pub bout: CurrentRound,
     /// Input devices and players.
@@ -110,6 +114,7 @@ impl Game {
             controls: Controls::new(pads),
             levels,
             chosen: 0,
+            ending: Ending::default(),
             dialog: Dialog::default(),
             shelf: SavedRounds::default(),
             offered: None,
@@ -239,20 +244,39 @@ impl Game {
             .collect()
     }
 
-    /// Returns what is missing until a section opens; `None` if it is open.
+    /// Returns why a section is closed; `None` if it is open.
     pub fn lock_of(&self, section: Section) -> Option<Lock> {
+        let Settings { open_all, calm, .. } = self.settings;
         match section {
-            Section::Chapter(chapter) if !self.settings.open_all => self.journey().lock(chapter),
+            Section::Chapter(chapter) if !(open_all || calm) => self.journey().lock(chapter),
             _ => None,
         }
     }
 
-    /// Starts the level after the chosen one in the order of the list. After the last open one, shows the list.
+    /// Returns why the level with this index in [`Self::levels`] is closed; `None` if it is open.
+    pub fn lock_of_level(&self, index: usize) -> Option<Lock> {
+        let level = &self.levels[index];
+        let must_tear = self.settings.calm && level.game().ignores(Assist::Unbreakable);
+        let section = Section::of(level, self.is_own(index));
+        must_tear
+            .then_some(Lock::Calm)
+            .or_else(|| self.lock_of(section))
+    }
+
+    /// Starts the next open level after the chosen one in the order of the list. After the last one, shows the list.
+    /// When the whole path has just been won, shows the ending.
     pub fn start_next(&mut self) {
-        let open = Section::all().filter(|&section| self.lock_of(section).is_none());
-        let order: Vec<usize> = open.flat_map(|section| self.levels_of(section)).collect();
+        if std::mem::take(&mut self.ending.is_due) {
+            return self.show_ending();
+        }
+        let order: Vec<usize> = Section::all()
+            .flat_map(|section| self.levels_of(section))
+            .collect();
         let place = order.iter().position(|&index| index == self.chosen);
-        match place.and_then(|place| order.get(place + 1)) {
+        let mut after = order
+            .iter()
+            .skip(place.map_or(order.len(), |place| place + 1));
+        match after.find(|&&index| self.lock_of_level(index).is_none()) {
             Some(&next) => self.start(next),
             None => self.go(Screen::Levels),
         }
@@ -268,11 +292,8 @@ impl Game {
     /// Starts a level with the chosen assists, and with the ghost of the best round if the player wants it.
     fn play(&mut self, level: &Arc<Level>) {
         if self.bout.round().level().id != level.id {
-            let (said, chosen) = (self.words(), &self.settings.assists);
-            let ignored = chosen
-                .iter()
-                .filter(|&&assist| level.game().ignores(assist));
-            for &assist in ignored {
+            let (said, chosen) = (self.words(), self.settings.chosen_assists());
+            for assist in chosen.filter(|&assist| level.game().ignores(assist)) {
                 self.notices
                     .tell(&(said.assist_ignored)((said.assist)(assist)));
             }
@@ -283,7 +304,7 @@ impl Game {
 
     /// Returns the level with the chosen assists applied, except those that the level ignores.
     fn eased(&mut self, level: &Arc<Level>) -> Arc<Level> {
-        let chosen = self.settings.assists.iter().copied();
+        let chosen = self.settings.chosen_assists();
         let assists = chosen.filter(|&assist| !level.game().ignores(assist));
         let assists: BTreeSet<Assist> = assists.collect();
         if assists.is_empty() {
@@ -357,6 +378,10 @@ impl Game {
 
     fn begin(&mut self, session: Session) {
         self.note_end();
+        let session = match self.may_rewind() {
+            true => session,
+            false => session.without_rewind(),
+        };
         self.bout.begin(session, self.time);
         let is_space = self.bout.turn().is_some();
         self.controls.begin(is_space);
@@ -502,6 +527,13 @@ impl Game {
         may && self.bout.takes_two()
     }
 
+    /// Whether players can let time run back. The operator of a stand may have turned it off.
+    pub fn may_rewind(&self) -> bool {
+        self.public
+            .as_ref()
+            .is_none_or(|public| !public.is_rewind_off)
+    }
+
     /// Turns forces on again after they were cut.
     pub fn restore_forces(&mut self) {
         self.forces.restore();
@@ -522,10 +554,10 @@ impl Game {
 
     /// Whether the round is visible, even if dimmed. A hidden round stands still and is silent.
     pub fn is_seen(&self) -> bool {
-        use Screen::{Forces, Levels, Licences, Replays, Settings};
+        use Screen::{Ending, Forces, Levels, Licences, Replays, Settings};
         !matches!(
             self.screen(),
-            Levels | Replays | Settings | Forces | Licences
+            Levels | Ending | Replays | Settings | Forces | Licences
         )
     }
 

@@ -177,8 +177,8 @@ fn try_play(options: &Options) -> Result<(), HeadlessError> {
 /// Plays the round or the level in a link, and returns the report.
 fn try_link(link: &str, options: &Options) -> Result<String, HeadlessError> {
     match Link::read(link)? {
-        Link::Level(level) => try_bot(level, options),
-        Link::Round(replay) => check(Path::new("the link"), replay, options),
+        Link::Level(level) => try_bot(*level, options),
+        Link::Round(replay) => check(Path::new("the link"), *replay, options),
     }
 }
 

@@ -46,6 +46,9 @@ pub struct Settings {
     pub scanning: Scanning,
     /// Assists that make levels easier.
     pub assists: BTreeSet<Assist>,
+    /// Calm mode for small children: nothing tears, drawn faces stay happy, and all chapters are open. Levels in which
+    /// things must tear are closed.
+    pub calm: bool,
     /// Whether all chapters of the path are open.
     pub open_all: bool,
     /// Whether players race against the ghost of their own fastest round.
@@ -124,6 +127,7 @@ impl Default for Settings {
             dwell: false,
             scanning: Scanning::default(),
             assists: BTreeSet::new(),
+            calm: false,
             open_all: false,
             race_best: false,
             full_screen: false,
@@ -161,6 +165,13 @@ impl Settings {
             settings.haptics = 0.0;
         }
         (settings, refused)
+    }
+
+    /// Returns the assists that apply to levels which do not ignore them: those chosen, and those of calm mode.
+    pub fn chosen_assists(&self) -> impl Iterator<Item = Assist> {
+        let calm = self.calm.then_some(Assist::Unbreakable);
+        let all: BTreeSet<Assist> = self.assists.iter().copied().chain(calm).collect();
+        all.into_iter()
     }
 
     /// Returns the settings as TOML.

@@ -5,9 +5,9 @@ use crate::words::Language;
 use jiff::civil::Time;
 use serde::{Deserialize, Deserializer};
 use std::sync::Arc;
-use tamaire_play::Level;
-use tamaire_play::level::LevelError;
+use tamaire_play::level::{CHAPTERS, LevelError, PATH};
 use tamaire_play::link::is_link;
+use tamaire_play::{Assist, Level};
 use toml_edit::{DocumentMut, Item, Value};
 
 /// Default configuration file, with a comment on each line.
@@ -28,6 +28,15 @@ pub struct Config {
     pub other_languages: bool,
     /// Levels to play: one, or several that visitors choose from.
     pub levels: Levels,
+    /// Chapters of the path to play in place of `levels`, counted from 1; default none.
+    #[serde(default)]
+    pub chapters: Chapters,
+    /// Calm mode for small children: nothing tears, and drawn faces stay happy. Default false.
+    #[serde(default)]
+    pub calm: bool,
+    /// Whether visitors can let time run back. Default true.
+    #[serde(default = "usual_rewind")]
+    pub rewind: bool,
     /// Whether a second player may join.
     pub two_players: bool,
     /// Times without input until the stand is reset and until the pointer is hidden.
@@ -163,6 +172,17 @@ checked! {
     }
 }
 checked! {
+    /// Numbers of chapters of the path, counted from 1.
+    #[derive(Default)]
+    Chapters(Vec<usize>), Vec<usize>, |numbers| {
+        let has_levels = |number: &usize| PATH.iter().any(|level| level.chapter == *number);
+        match numbers.iter().find(|number| !has_levels(number)) {
+            Some(wrong) => Err(format!("expected chapters from 1 to {}, found {wrong}", CHAPTERS.len())),
+            None => Ok(numbers),
+        }
+    }
+}
+checked! {
     /// Address of a page, `https://…`.
     PageAddress(String), String, |page| match page.starts_with("https://") || page.starts_with("http://") {
         true if page.len() <= 200 && !page.contains(['#', ' ']) => Ok(page),
@@ -255,7 +275,18 @@ impl Config {
     /// # Errors
     /// The error text describes the problem and names its line in the file.
     pub fn read(text: &str) -> Result<Self, String> {
-        toml::from_str(text).map_err(|error| error.to_string())
+        let mut config: Self = toml::from_str(text).map_err(|error| error.to_string())?;
+        let chapters = &config.chapters.0;
+        if !chapters.is_empty() {
+            let path = PATH
+                .iter()
+                .filter(|level| chapters.contains(&level.chapter));
+            config.levels = Levels(path.map(|level| Arc::new(level.open())).collect());
+        }
+        if config.calm {
+            config.levels = config.levels.calmed(!chapters.is_empty())?;
+        }
+        Ok(config)
     }
 
     /// Settings of the game after a reset of the stand.
@@ -264,6 +295,7 @@ impl Config {
             language: self.language,
             volume: self.sound.volume.0,
             haptics: self.force.strength.0,
+            calm: self.calm,
             full_screen: true,
             ..Settings::default()
         }
@@ -304,6 +336,7 @@ impl ConfigChange {
             Self::Volume(volume) => put(&mut file["sound"]["volume"], rounded(*volume)),
             Self::Strength(strength) => put(&mut file["force"]["strength"], rounded(*strength)),
             Self::Levels(ids) => {
+                file.remove("chapters");
                 put(
                     &mut file["levels"],
                     Value::from_iter(ids.iter().map(String::as_str)),
@@ -319,6 +352,36 @@ impl ConfigChange {
         let text = file.to_string();
         Config::read(&text).map(|_| text)
     }
+}
+
+impl Levels {
+    /// Returns the levels with nothing that tears. Levels in which things must tear are left out if `leaves_out`.
+    ///
+    /// # Errors
+    /// A text that names a level in which things must tear, or tells that no level is left.
+    fn calmed(&self, leaves_out: bool) -> Result<Self, String> {
+        let must_tear = |level: &&Arc<Level>| level.game().ignores(Assist::Unbreakable);
+        if let Some(level) = self.0.iter().find(must_tear).filter(|_| !leaves_out) {
+            let id = &level.id;
+            return Err(format!(
+                "calm: expected false with the level {id:?}, in which things must tear"
+            ));
+        }
+        let calm = self.0.iter().filter(|level| !must_tear(level));
+        let calm = calm.map(|level| level.assisted(&[Assist::Unbreakable].into()).map(Arc::new));
+        let calm: Result<Vec<_>, _> = calm.collect();
+        let calm = calm.map_err(|error| error.to_string())?;
+        match calm.is_empty() {
+            true => {
+                Err("calm: expected false, because things must tear in all these levels".into())
+            }
+            false => Ok(Self(calm)),
+        }
+    }
+}
+
+fn usual_rewind() -> bool {
+    true
 }
 
 /// Rounds to two decimal digits.
@@ -400,6 +463,57 @@ mod tests {
             assert!(error.contains(told), "{error}");
             assert!(error.contains(&format!("line {line},")), "{line}: {error}");
         }
+    }
+
+    #[test]
+    fn chapters_replace_levels_and_calm_leaves_out_what_must_tear() {
+        let with = |lines: &str| Config::read(&format!("{lines}\n{DEFAULT_CONFIG}"));
+        let ids = |config: &Config| -> Vec<String> {
+            config
+                .levels
+                .0
+                .iter()
+                .map(|level| level.id.clone())
+                .collect()
+        };
+        let of_path = |chapters: &[usize]| -> Vec<String> {
+            let path = PATH
+                .iter()
+                .filter(|level| chapters.contains(&level.chapter));
+            path.map(|level| level.id.to_string()).collect()
+        };
+        let config = with("chapters = [1, 5]").unwrap();
+        assert_eq!(ids(&config), of_path(&[1, 5]));
+        let calm = DEFAULT_CONFIG.replace("calm = false", "calm = true");
+        let config = Config::read(&format!("chapters = [2, 4]\n{calm}")).unwrap();
+        let (left, all) = (ids(&config), of_path(&[2, 4]));
+        assert!(!left.contains(&"halves".to_string()) && all.contains(&"halves".to_string()));
+        for level in &config.levels.0 {
+            let tears = level
+                .scene()
+                .materials()
+                .iter()
+                .any(|material| material.strength.is_finite());
+            assert!(!tears, "{}", level.id);
+        }
+        assert!(config.settings().calm);
+        let halves = calm.replace("[\"classic\"]", "[\"halves\"]");
+        let error = Config::read(&halves).unwrap_err();
+        assert!(
+            error.contains("calm: expected false with the level \"halves\""),
+            "{error}"
+        );
+        let error = with("chapters = [7]").unwrap_err();
+        assert!(
+            error.contains("expected chapters from 1 to 5, found 7"),
+            "{error}"
+        );
+        // Staff who choose levels replace the chapters.
+        let chosen = ConfigChange::Levels(vec!["hoop".into()]);
+        let text = chosen
+            .in_text(&format!("chapters = [1]\n{DEFAULT_CONFIG}"))
+            .unwrap();
+        assert_eq!(ids(&Config::read(&text).unwrap()), ["hoop"]);
     }
 
     #[test]

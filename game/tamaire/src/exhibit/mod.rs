@@ -217,6 +217,7 @@ impl Stand {
         let public = game.public.get_or_insert_default();
         public.is_left = matches!(self.attention, Attention::Leaving(_));
         public.takes_two = self.config.two_players;
+        public.is_rewind_off = !self.config.rewind;
         if std::mem::take(&mut public.asks_for_language) && self.config.other_languages {
             game.settings.language = game.settings.language.other();
         }

@@ -148,6 +148,7 @@ fn draw(ui: &Ui, rect: Rect, moment: &Moment, stage: &mut Stage, theme: &Theme) 
         time: moment.time,
         ghost: None,
         hint: Hint::None,
+        calm: false,
         resolution: 1.0,
         reduced_motion: false,
     };

@@ -37,6 +37,8 @@ pub struct CurrentRound {
     /// Outcome of a won round, and whether it is the player's best for its route. `None` for replays.
     pub won: Option<(Outcome, bool)>,
     pub(super) lesson: Tutorial,
+    /// Whether each switch was pressed after the last tick.
+    pub(super) switches: Vec<bool>,
     /// Whether the round has been added to [`PublicMode::ended`](super::PublicMode::ended).
     pub(super) is_noted: bool,
     /// Number of the last look at the pieces in this round, and whether the round was hopeless then.
@@ -64,6 +66,7 @@ impl CurrentRound {
             is_rewind_pressed: false,
             won: None,
             lesson: Tutorial::default(),
+            switches: Vec::new(),
             is_noted: false,
             hopeless: None,
             is_known_slow: false,
@@ -82,6 +85,7 @@ impl CurrentRound {
         if self.lesson.begin(has_failed) {
             self.effects.remind();
         }
+        self.switches.clear();
         // The view refers to the previous round.
         self.view = None;
         self.won = None;

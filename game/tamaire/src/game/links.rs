@@ -43,10 +43,10 @@ impl Game {
     /// Opens a link: a level is started, a round is offered to watch or race.
     pub fn open_link(&mut self, link: &str) {
         match Link::read(link) {
-            Ok(Link::Level(level)) => self.offer(level),
+            Ok(Link::Level(level)) => self.offer(*level),
             Ok(Link::Round(replay)) => match replay.level() {
                 Ok(level) => {
-                    self.offered = Some((Arc::new(replay), Arc::new(level)));
+                    self.offered = Some((Arc::from(replay), Arc::new(level)));
                     self.attract();
                     self.go(Screen::Offered);
                 }

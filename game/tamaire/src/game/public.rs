@@ -14,6 +14,8 @@ pub struct PublicMode {
     pub attractions: Vec<Arc<Replay>>,
     /// Whether a second player may join.
     pub takes_two: bool,
+    /// Whether visitors cannot let time run back.
+    pub is_rewind_off: bool,
     /// Whether the visitor seems to have left. Force feedback is then off.
     pub is_left: bool,
     /// Whether a visitor asked for the other language.

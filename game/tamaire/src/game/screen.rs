@@ -7,6 +7,8 @@ pub enum Screen {
     Title,
     /// Choice of levels.
     Levels,
+    /// The ending, after the last level of the path.
+    Ending,
     /// Explanation of how two players play.
     Together,
     /// Saved rounds.
@@ -33,6 +35,7 @@ impl Screen {
         use Screen::*;
         match self {
             Title => false,
+            Ending => matches!(other, Title | Levels),
             Levels | Together | Replays | Offered => other == Title,
             Play => matches!(other, Title | Levels | Replays | Offered),
             Paused | Result => other == Play,
@@ -99,6 +102,7 @@ mod tests {
             (&[Levels, Play, Paused, Settings, Forces], Settings),
             (&[Settings, Licences], Settings),
             (&[Levels, Play], Levels),
+            (&[Levels, Play, Result, Ending], Levels),
             (&[Replays, Play], Replays),
             (&[Play], Title),
             // A file dropped onto the settings is played at once.

@@ -65,6 +65,7 @@ impl Game {
         }
         self.tell_if_slow();
         self.celebrate(seconds);
+        self.count_up(seconds);
         self.learn(seconds);
         self.drive_forces(seconds);
         if self.screen() == Screen::Title && self.bout.session.is_over() {
@@ -133,6 +134,7 @@ impl Game {
                     session,
                     effects,
                     camera,
+                    switches,
                     ..
                 },
             controls: Controls {
@@ -162,7 +164,8 @@ impl Game {
                 for (player, size) in haptics::tears(round).into_iter().enumerate() {
                     tears[player] = size.max(tears[player]);
                 }
-                for cue in heard::cues(round, view) {
+                let switched = heard::switched(round, switches, view);
+                for cue in heard::cues(round, view).into_iter().chain(switched) {
                     sound.play(cue);
                 }
             },
@@ -225,7 +228,9 @@ impl Game {
             // recorded.
             let is_known = self.listed(&level).is_some();
             let rewinds = self.bout.round().rewinds();
+            let was_won = self.has_won_path();
             let is_best = is_known && self.records.note(&level, &outcome, rewinds);
+            self.ending.is_due |= !was_won && self.has_won_path();
             self.bout.won = Some((outcome, is_best));
             self.note_end();
             self.sound.play(Cue::Won(match outcome.route {

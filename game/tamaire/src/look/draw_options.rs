@@ -25,6 +25,8 @@ pub struct DrawOptions<'a> {
     pub ghost: Option<&'a AnyRound>,
     /// Hint that is shown until the hand moves.
     pub hint: Hint,
+    /// Whether drawn faces stay happy.
+    pub calm: bool,
     /// Reduced motion.
     pub reduced_motion: bool,
     /// Resolution of the drawn world, relative to the screen.

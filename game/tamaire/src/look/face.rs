@@ -30,6 +30,16 @@ pub enum Mood {
     Beam,
 }
 
+impl Mood {
+    /// Returns the happy expression nearest to this one.
+    pub(super) fn happy(self) -> Self {
+        match self {
+            Self::Calm | Self::Wince | Self::Shock | Self::Sad => Self::Calm,
+            Self::Beam => Self::Beam,
+        }
+    }
+}
+
 /// Current drawn face of a body.
 #[derive(Copy, Clone, Debug)]
 pub struct Face {

@@ -253,10 +253,16 @@ fn faces<D: Dim>(round: &Round<D>, look: &DrawOptions) -> Vec<Face> {
             true => 0.0,
             false => 0.16 * (-9.0 * feeling.age).exp(),
         };
+        let face = face_at_rest(number, feeling, 1.0 + start);
         Face {
+            mood: if look.calm {
+                face.mood.happy()
+            } else {
+                face.mood
+            },
             blink: (1.0 - (phase - 0.1).abs() / 0.1).clamp(0.0, 1.0),
             look_at: nearest.unwrap_or(feeling.at),
-            ..face_at_rest(number, feeling, 1.0 + start)
+            ..face
         }
     };
     feelings.iter().enumerate().map(face).collect()

@@ -30,7 +30,8 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
         row.push((Action::Pause, said.paused, icons::pause));
     }
     row.push((Action::Retry, said.again, icons::again));
-    if game.bout.session.is_played() && game.bout.round().progress().outcome.is_none() {
+    let is_on = game.bout.session.is_played() && game.bout.round().progress().outcome.is_none();
+    if is_on && game.may_rewind() {
         let name = (said.action)(Action::Rewind);
         row.push((Action::Rewind, name, icons::rewind));
     }

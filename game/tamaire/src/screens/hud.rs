@@ -51,6 +51,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     goals::strip(&mut row, &theme, game);
     draw_chips(&mut row, &theme, game);
     draw_lesson(ui, screen, scale, game);
+    draw_caption(ui, screen, scale, game);
     is_on_button
 }
 
@@ -172,6 +173,27 @@ fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
         // While a line fades out, the lines above it move down.
         bottom -= strength * scale * (LINE + 0.5 * GAP);
     }
+}
+
+/// Draws the explanation of the element view at the lower edge.
+fn draw_caption(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
+    let Some(colour) = game.bout.elements else {
+        return;
+    };
+    let (theme, painter) = (game.theme(), ui.painter());
+    let text = (game.words().elements_caption)(colour).to_string();
+    let font = FontId::proportional(18.0 * scale);
+    let width = (screen.width() - scale * 48.0).min(scale * 620.0);
+    let galley = painter.layout(text, font, theme.ink, width);
+    let low = match game.public {
+        Some(_) => screen.bottom() - STAND,
+        None => screen.bottom(),
+    };
+    let size = galley.size() + scale * vec2(32.0, 16.0);
+    let middle = pos2(screen.center().x, low - scale * GAP - 0.5 * size.y);
+    let rect = Rect::from_center_size(middle, size);
+    painter.rect_filled(rect, scale * 16.0, pale(&theme));
+    painter.galley(rect.center() - 0.5 * galley.size(), galley, theme.ink);
 }
 
 /// Draws the legend of element colours: small to large, or relaxed to strained.

@@ -9,7 +9,7 @@ use crate::look::{Maps, Stage};
 use crate::records::{Record, WishName};
 use crate::words::Language;
 use app_shell::Theme;
-use app_shell::widgets::{ButtonStyle, fitted, focus_ring, highlight, is_on, plain_button};
+use app_shell::widgets::{ButtonStyle, button, fitted, focus_ring, highlight, is_on, plain_button};
 use egui::{
     Color32, Rect, Response, RichText, Role, Sense, Stroke, Tooltip, Ui, Vec2, WidgetInfo, pos2,
     vec2,
@@ -30,6 +30,7 @@ enum LevelAction {
     Play(usize),
     TakeOut(usize),
     TellLock(Lock),
+    ShowEnding,
 }
 
 pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
@@ -62,6 +63,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                     let shown = ui.horizontal_top(|ui| {
                         let shown = row.iter().map(|&index| {
                             let shown = ui.vertical(|ui| {
+                                let lock = game.lock_of_level(index);
                                 let response = match lock {
                                     None => tile(ui, game, maps, index, size),
                                     Some(_) => locked_tile(ui, game, index, size),
@@ -90,6 +92,12 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 }
                 ui.add_space(6.0);
             }
+            if game.has_won_path() {
+                let size = vec2(260.0, 52.0);
+                if button(ui, &theme, said.ending, size, ButtonStyle::Main).clicked() {
+                    wanted = Some(LevelAction::ShowEnding);
+                }
+            }
             ui.add_space(10.0);
             legend(ui, game);
         });
@@ -112,13 +120,17 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             game.take_out(index)
         }
         LevelAction::TakeOut(index) => set_pending(ui, Some(&game.levels[index].id)),
+        LevelAction::ShowEnding => game.show_ending(),
         LevelAction::TellLock(lock) => game.notify(lock_text(game, lock)),
     }
 }
 
-/// Returns how a locked section opens.
+/// Returns why a chapter or level is closed.
 fn lock_text(game: &Game, lock: Lock) -> String {
-    (game.words().opens_with)(lock.missing, lock.before)
+    match lock {
+        Lock::Stars { missing, before } => (game.words().opens_with)(missing, before),
+        Lock::Calm => game.words().not_in_calm.to_string(),
+    }
 }
 
 /// Shows the title of a section, and of a chapter its stars, or how it opens.
@@ -172,7 +184,7 @@ fn draw_way(ui: &Ui, game: &Game, row: &[usize], tiles: &[Rect]) {
     }
 }
 
-/// Shows a level that is still locked: a card with its name and a lock.
+/// Shows a closed level: a card with its name and a lock.
 fn locked_tile(ui: &mut Ui, game: &Game, index: usize, size: Vec2) -> Response {
     let theme = game.theme();
     let name = game.settings.language.of(&game.levels[index].game().name);

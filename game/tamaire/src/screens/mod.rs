@@ -3,6 +3,7 @@
 mod attendant;
 mod buttons;
 mod confirmation;
+mod ending;
 mod forces;
 mod goals;
 mod hopeless;
@@ -42,6 +43,7 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         Screen::Title => title::show(game, ui),
         Screen::Together => together::show(game, ui),
         Screen::Levels => levels::show(game, stage, ui),
+        Screen::Ending => ending::show(game, stage, ui),
         Screen::Play => play::show(game, ui),
         Screen::Paused => paused::show(game, ui),
         Screen::Result => result::show(game, ui),

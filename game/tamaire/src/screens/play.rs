@@ -54,6 +54,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         time: game.time,
         ghost: game.bout.session.ghost(),
         hint,
+        calm: game.settings.calm,
         reduced_motion: game.settings.reduced_motion,
         resolution: game.quality().resolution(),
     };

@@ -95,6 +95,7 @@ fn sections(ui: &mut Ui, theme: &Theme, said: &Words, chosen: &mut Settings) -> 
         scanning(ui, theme, said, &mut chosen.scanning);
     });
     section(ui, theme, said.assists_section, |ui| {
+        switch(ui, said.calm, &mut chosen.calm);
         for assist in [Assist::WiderBasket, Assist::Unbreakable] {
             let mut is_on = chosen.assists.contains(&assist);
             switch(ui, (said.assist)(assist), &mut is_on);

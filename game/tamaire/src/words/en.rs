@@ -6,6 +6,7 @@ use super::{percent_below, percent_of_limit, tenths_above};
 use crate::input::{Action, InputMethod};
 use crate::settings::Quality;
 use force_feedback::{Ability, Stop};
+use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_scenes::import::{ImportNote, NoteKind};
 use tamaire_play::{Assist, Joints, Route};
 
@@ -131,6 +132,8 @@ pub(super) const WORDS: Words = Words {
     dwell: "Click by hovering",
     scanning: "One-switch scanning",
     how_by_switch: "Press the switch to do what the arrow shows",
+    calm: "Calm mode: nothing tears, faces stay happy",
+    not_in_calm: "Things must tear here: not in calm mode.",
     assists_section: "Easier play (from the next round)",
     assist: |assist| match assist {
         Assist::WiderBasket => "Wider basket",
@@ -389,6 +392,30 @@ pub(super) const WORDS: Words = Words {
     play_alone: "Play alone",
     no_arrow_keys: "The first player has no arrow key for each direction. Choose them in Settings, Controls.",
     no_letter_keys: "The second player has no letter key for each direction. Choose them in Settings, Controls.",
+    count: |number| {
+        const NAMES: [&str; 10] = [
+            "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten",
+        ];
+        let name = number.checked_sub(1).and_then(|index| NAMES.get(index));
+        name.map_or(format!("{number}!"), |name| format!("{name}!"))
+    },
+    thanks: |levels, earned, all| {
+        let first = match earned == all {
+            true => format!("{levels} levels and every star! Nothing is left to tear."),
+            false => format!("{levels} levels, {earned} of {all} stars."),
+        };
+        [first, "Thank you for playing!".to_string()]
+    },
+    ending: "The ending",
+    elements_caption: |colour| match colour {
+        ElementColour::Level => {
+            "The body is made of blocks: small at the rim, large inside. Where it tears, small ones replace large ones."
+        }
+        ElementColour::Strain => {
+            "Pale is at rest, red is strained. It tears where the strain is too great."
+        }
+    },
+    first_move: "The ghost shows a first move.",
     one_hand: "This level has only one hand, so one player plays.",
 };
 

@@ -6,6 +6,7 @@ use super::{percent_below, percent_of_limit, tenths_above};
 use crate::input::{Action, InputMethod};
 use crate::settings::Quality;
 use force_feedback::{Ability, Stop};
+use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_scenes::import::{ImportNote, NoteKind};
 use tamaire_play::level::LevelError;
 use tamaire_play::link::{LinkError, MAX_LENGTH};
@@ -130,6 +131,8 @@ pub(super) const WORDS: Words = Words {
     dwell: "マウスを止めてクリック",
     scanning: "スイッチひとつで操作",
     how_by_switch: "スイッチをおすと、やじるしのとおりに動くよ",
+    calm: "おだやかモード：ちぎれない、いつも にこにこ",
+    not_in_calm: "ちぎる ステージなので、おだやかモードでは あそべません。",
     assists_section: "やさしくする（つぎのラウンドから）",
     assist: |assist| match assist {
         Assist::WiderBasket => "広いかご",
@@ -382,6 +385,39 @@ pub(super) const WORDS: Words = Words {
     play_alone: "ひとりで あそぶ",
     no_arrow_keys: "ひとりめの人の矢印キーが たりません。設定の「操作」でえらんでください。",
     no_letter_keys: "ふたりめの人の文字キーが たりません。設定の「操作」でえらんでください。",
+    count: |number| {
+        const NAMES: [&str; 10] = [
+            "ひとつ",
+            "ふたつ",
+            "みっつ",
+            "よっつ",
+            "いつつ",
+            "むっつ",
+            "ななつ",
+            "やっつ",
+            "ここのつ",
+            "とお",
+        ];
+        let name = number.checked_sub(1).and_then(|index| NAMES.get(index));
+        name.map_or(format!("{number}！"), |name| format!("{name}！"))
+    },
+    thanks: |levels, earned, all| {
+        let first = match earned == all {
+            true => format!("{levels}ステージ、星も ぜんぶ！ もう ちぎる ものが ないよ。"),
+            false => format!("{levels}ステージ、星は {all}こ中 {earned}こ。"),
+        };
+        [first, "あそんでくれて ありがとう！".to_string()]
+    },
+    ending: "エンディング",
+    elements_caption: |colour| match colour {
+        ElementColour::Level => {
+            "体は ブロックで できている。ふちは ちいさく、なかは おおきい。ちぎれる ところは、ちいさな ブロックに かわる。"
+        }
+        ElementColour::Strain => {
+            "しろっぽい ところは らく、あかい ところは ひっぱられている。むりが かかりすぎると ちぎれる。"
+        }
+    },
+    first_move: "おばけが さいしょの うごきを みせるよ。",
     one_hand: "このステージの手は ひとつだけなので、ひとりであそびます。",
 };
 

@@ -3,6 +3,7 @@
 use crate::input::{Action, InputMethod};
 use crate::settings::Quality;
 use force_feedback::{Ability, Calibration, Stop};
+use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_scenes::import::ImportNote;
 use tamaire_play::level::LevelError;
 use tamaire_play::link::LinkError;
@@ -75,6 +76,9 @@ pub struct Words {
     pub dwell: &'static str,
     pub scanning: &'static str,
     pub how_by_switch: &'static str,
+    pub calm: &'static str,
+    /// Reason why a level is closed in calm mode.
+    pub not_in_calm: &'static str,
     pub assists_section: &'static str,
     pub assist: fn(Assist) -> &'static str,
     pub assisted: &'static str,
@@ -165,6 +169,16 @@ pub struct Words {
     pub who_plays: fn(&[String; 2]) -> [String; 4],
     pub play_as_two: &'static str,
     pub play_alone: &'static str,
+    /// A number called out when the won levels are counted.
+    pub count: fn(usize) -> String,
+    /// Thanks at the end of the game, for the number of won levels, earned stars and all stars.
+    pub thanks: fn(usize, usize, usize) -> [String; 2],
+    /// Button that shows the ending.
+    pub ending: &'static str,
+    /// Explanation of the element view by its colours: size of the elements, or strain.
+    pub elements_caption: fn(ElementColour) -> &'static str,
+    /// Notice when a ghost shows the first move of the level.
+    pub first_move: &'static str,
     /// Missing keys of one of two players at a keyboard.
     pub no_arrow_keys: &'static str,
     pub no_letter_keys: &'static str,

@@ -104,6 +104,36 @@ fn portrait_screens_match_pictures() {
     pictures(&mut window, "upright_offered");
 }
 
+#[test]
+fn ending_matches_pictures() {
+    take_ending("ending", vec2(704.0, 440.0));
+}
+
+#[test]
+fn portrait_ending_matches_pictures() {
+    take_ending("upright_ending", vec2(390.0, 844.0));
+}
+
+fn take_ending(name: &str, size: Vec2) {
+    let mut window = open(Files::nowhere(), size, 1.0);
+    game(&mut window).settings.reduced_motion = true;
+    for index in game(&mut window).path() {
+        let level = game(&mut window).levels[index].clone();
+        game(&mut window).records.note(&level, &WON, 0);
+    }
+    game(&mut window).show_ending();
+    // One thumbnail is rendered in each frame.
+    let levels = game(&mut window).levels.len();
+    frames(&mut window, levels);
+    press(&mut window, Key::Enter);
+    frames(&mut window, 2);
+    window.get_by_label_contains("Thank you for playing!");
+    pictures(&mut window, name);
+    press(&mut window, Key::Escape);
+    frames(&mut window, 2);
+    assert_eq!(game(&mut window).screen(), Screen::Levels);
+}
+
 /// Takes pictures of the list with a dropped level at its end, whose remove button was pressed once.
 fn own_level(window: &mut Window) {
     drop_file(window, level_file("cat.png"));

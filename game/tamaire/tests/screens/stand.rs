@@ -541,7 +541,7 @@ fn invalid_configuration_is_reported_with_line() {
         panic!("the configuration is invalid");
     };
     assert!(
-        error.contains("exhibit.toml") && error.contains("line 10"),
+        error.contains("exhibit.toml") && error.contains("line 13"),
         "{error}"
     );
 }

@@ -1,7 +1,7 @@
 //! Choice of a level at the stand.
 
 use super::super::levels::{LEGEND, legend, tile};
-use super::super::widgets::{dim_background, focus_first};
+use super::super::widgets::{dim_background, focus_first, page};
 use super::language::above;
 use crate::exhibit::Stand;
 use crate::game::Game;
@@ -13,11 +13,64 @@ use tamaire_sound::Menu;
 const GAP: f32 = 28.0;
 /// Maximum width of a tile [points].
 const WIDE: f32 = 360.0;
+/// Approximate width of a tile in rows [points].
+const NARROW: f32 = 260.0;
 /// Height of a tile below its thumbnail [points].
 const BELOW: f32 = 92.0;
 
+/// Maximum number of levels that are shown side by side. More are shown in rows.
+const MOST_ACROSS: usize = 3;
+
 pub(super) fn show(stand: &mut Stand, game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     dim_background(ui, 255);
+    let chosen = match game.levels.len() <= MOST_ACROSS {
+        true => side_by_side(game, stage, ui),
+        false => in_rows(game, stage, ui),
+    };
+    if let Some(index) = chosen.filter(|_| stand.is_settled()) {
+        game.blip(Menu::Confirm);
+        stand.choose(game, index);
+    }
+}
+
+/// Shows the levels in rows. Returns the chosen one.
+fn in_rows(game: &Game, stage: &mut Stage, ui: &mut Ui) -> Option<usize> {
+    let theme = game.theme();
+    let maps = stage.maps(&game.pictured(), &theme);
+    let mut chosen = None;
+    let area = egui::UiBuilder::new().max_rect(above(ui.max_rect()).shrink(GAP));
+    ui.scope_builder(area, |ui| {
+        let text = game.settings.language.at_stand().which;
+        let text = egui::RichText::new(text).size(44.0).color(theme.ink);
+        ui.vertical_centered(|ui| ui.label(text));
+        page(ui, "choice", f32::INFINITY, |ui| {
+            ui.spacing_mut().item_spacing = vec2(GAP, GAP);
+            let width = ui.available_width();
+            let columns = ((width + GAP) / (NARROW + GAP)).round().max(2.0);
+            let wide = (width - (columns - 1.0) * GAP) / columns;
+            let size = vec2(wide, 0.62 * (wide - 20.0) + BELOW);
+            let all: Vec<usize> = (0..game.levels.len()).collect();
+            for row in all.chunks(columns as usize) {
+                ui.horizontal_top(|ui| {
+                    for &index in row {
+                        let response = tile(ui, game, maps, index, size);
+                        if index == 0 {
+                            focus_first(ui, &response);
+                        }
+                        if response.clicked() {
+                            chosen = Some(index);
+                        }
+                    }
+                });
+            }
+            legend(ui, game);
+        });
+    });
+    chosen
+}
+
+/// Shows the levels side by side, and one below the other in a portrait window. Returns the chosen one.
+fn side_by_side(game: &Game, stage: &mut Stage, ui: &mut Ui) -> Option<usize> {
     let (theme, screen) = (game.theme(), above(ui.max_rect()));
     let text = game.settings.language.at_stand().which;
     let headline = fitted(
@@ -28,7 +81,6 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, stage: &mut Stage, ui: &m
         theme.ink,
     );
     let count = game.levels.len() as f32;
-    // Tiles are side by side; in a portrait window one below the other.
     let is_tall = screen.width() < screen.height();
     let (across, down) = if is_tall { (1.0, count) } else { (count, 1.0) };
     let room = vec2(
@@ -61,7 +113,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, stage: &mut Stage, ui: &m
         if index == 0 {
             focus_first(ui, &response);
         }
-        if response.clicked() && stand.is_settled() {
+        if response.clicked() {
             chosen = Some(index);
         }
     }
@@ -72,8 +124,5 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, stage: &mut Stage, ui: &m
     ui.scope_builder(egui::UiBuilder::new().max_rect(below), |ui| {
         legend(ui, game);
     });
-    if let Some(index) = chosen {
-        game.blip(Menu::Confirm);
-        stand.choose(game, index);
-    }
+    chosen
 }
