@@ -6,7 +6,7 @@ mod pointing;
 mod presses;
 mod switch;
 
-use crate::game::{Game, Screen};
+use crate::game::{Controls, Game, Screen};
 use crate::input::{Action, InputMethod, InputSource};
 use crate::look::Stage;
 use crate::platform::{
@@ -236,8 +236,12 @@ impl App {
         let events = ctx.input(|input| input.events.clone());
         if game.screen() != Screen::Play {
             game.controls.buttons.clear();
+            game.controls.covers.clear();
         }
-        let pressed = self.fingers.read_events(&events, &game.controls.buttons);
+        let Controls {
+            buttons, covers, ..
+        } = &game.controls;
+        let pressed = self.fingers.read_events(&events, buttons, covers);
         game.controls.devices.pressed = self.fingers.pressed().collect();
         let is_by_stick = self.presses.waiting().is_by_stick;
         let is_touched = ctx.input(|input| input.any_touches())

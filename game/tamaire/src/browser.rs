@@ -5,7 +5,7 @@ mod labels;
 
 use crate::app::App;
 use crate::game::Game;
-use crate::platform::{Files, Host, Sound, set_host};
+use crate::platform::{Files, Host, Sound, set_host, today};
 use app_shell::Pads;
 use eframe::{WebOptions, WebRunner};
 use fuwafuwa::Vec3;
@@ -37,7 +37,8 @@ impl Running {
             context.egui_ctx.add_plugin(plugin);
             // The closure runs only once, so the cell is still empty and setting it cannot fail.
             let _ = known.set(context.egui_ctx.clone());
-            let game = Game::new(Files::usual(), Sound::open(), Pads::open());
+            let mut game = Game::new(Files::usual(), Sound::open(), Pads::open());
+            game.calendar = Some(today);
             Ok(Box::new(App::new(context, game)?) as Box<dyn eframe::App>)
         };
         runner

@@ -7,7 +7,7 @@ mod window;
 use crate::game::Game;
 use crate::headless::{self, is_link_argument};
 use crate::licences;
-use crate::platform::{Files, OpenRequest, Sound, level_at};
+use crate::platform::{Files, OpenRequest, Sound, level_at, today};
 use app_shell::Pads;
 use app_shell::window::{WindowOutcome, has_display};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -122,6 +122,7 @@ pub fn main() -> ExitCode {
     let opened = open_game(egui::ViewportBuilder::default(), move || {
         let sound = if mute { Sound::none() } else { Sound::open() };
         let mut game = Game::new(Files::usual(), sound, Pads::open());
+        game.calendar = Some(today);
         if let Some(file) = &shown {
             game.open(OpenRequest::at(file));
         }

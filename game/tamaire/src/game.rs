@@ -17,6 +17,7 @@ mod screen;
 mod shelf;
 mod teach;
 mod time;
+mod toys;
 pub mod trial;
 mod watching;
 
@@ -40,9 +41,11 @@ pub use screen::{Screen, Screens};
 pub use shelf::{RoundDetails, SavedRound, SavedRounds};
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use tamaire_play::daily::{is_daily, level_of};
 use tamaire_play::level::built_in;
 use tamaire_play::{Assist, Level, Playback, Replay, ReplayError};
 use tamaire_sound::{Cue, Menu};
+pub use toys::Toys;
 use trial::Trial;
 pub use watching::SPEEDS;
 
@@ -60,6 +63,8 @@ pub struct Game {
     pub levels: Vec<Arc<Level>>,
     /// Index of the chosen level in [`Self::levels`].
     pub chosen: usize,
+    /// Returns today's date, in the form 2026-11-28. `None` = there is no level of the day.
+    pub calendar: Option<fn() -> String>,
     /// Progress of the ending.
     pub ending: Ending,
     /// Current round.
@@ -114,6 +119,7 @@ impl Game {
             controls: Controls::new(pads),
             levels,
             chosen: 0,
+            calendar: None,
             ending: Ending::default(),
             dialog: Dialog::default(),
             shelf: SavedRounds::default(),
@@ -226,6 +232,11 @@ impl Game {
         self.controls.rebinding = None;
         self.trial = None;
         match self.screen() {
+            Screen::Levels => {
+                if let Some(today) = self.calendar {
+                    self.follow_date(&today());
+                }
+            }
             Screen::Title if self.bout.session.is_played() => self.attract(),
             Screen::Replays => self.shelf.refresh(&self.files),
             _ => {}
@@ -476,12 +487,24 @@ impl Game {
     /// Whether the game shows names that other people chose, for example in a shared level. Such names may be
     /// in any script.
     pub fn has_strange_names(&self) -> bool {
-        self.offered.is_some() || self.is_own(self.levels.len() - 1)
+        self.offered.is_some() || (0..self.levels.len()).any(|index| self.is_own(index))
     }
 
-    /// Whether the level with index `index` in [`Self::levels`] is not built in.
+    /// Whether the level with index `index` in [`Self::levels`] is one that the player added.
     pub fn is_own(&self, index: usize) -> bool {
-        index >= built_in().count()
+        index >= built_in().count() && !is_daily(&self.levels[index])
+    }
+
+    /// Puts the level of the day into the list in place of that of an earlier day. `today` has the form 2026-11-28.
+    fn follow_date(&mut self, today: &str) {
+        let chosen = self.levels[self.chosen].clone();
+        let is_known = |level: &Arc<Level>| is_daily(level) && level.id.ends_with(today);
+        if !self.levels.iter().any(is_known) {
+            self.levels.retain(|level| !is_daily(level));
+            self.levels.extend(level_of(today).map(Arc::new));
+        }
+        let place = self.levels.iter().position(|level| level.id == chosen.id);
+        self.chosen = place.unwrap_or(0);
     }
 
     /// Performs an action requested by a key or button.

@@ -2,6 +2,7 @@
 
 use crate::records::{Records, WishName};
 use tamaire_play::Level;
+use tamaire_play::daily::is_daily;
 use tamaire_play::level::{CHAPTERS, OPENING_SHARE, PATH};
 
 /// Earned stars and all stars of some levels. A level has a star for the win and one for each of its goals.
@@ -91,6 +92,8 @@ pub enum Lock {
 /// Part of the list of levels.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Section {
+    /// The level of the day.
+    Day,
     /// The classic level and the playgrounds.
     First,
     /// Chapter of the path, counted from 1.
@@ -105,7 +108,7 @@ impl Section {
     /// All sections, in order.
     pub fn all() -> impl Iterator<Item = Self> {
         let chapters = (1..=CHAPTERS.len()).map(Self::Chapter);
-        [Self::First]
+        [Self::Day, Self::First]
             .into_iter()
             .chain(chapters)
             .chain([Self::More, Self::Own])
@@ -116,6 +119,7 @@ impl Section {
         const FIRST: [&str; 4] = ["classic", "classic-3d", "sandbox", "sandbox-3d"];
         match chapter_of(level) {
             _ if is_own => Self::Own,
+            _ if is_daily(level) => Self::Day,
             Some(chapter) => Self::Chapter(chapter),
             None if FIRST.contains(&level.id.as_str()) => Self::First,
             None => Self::More,

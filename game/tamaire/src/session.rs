@@ -8,6 +8,7 @@ use fuwafuwa::DEFAULT_TICK;
 use guide::Guide;
 use reel::Reel;
 use std::sync::Arc;
+use tamaire_play::playground::{Change, ChangeError};
 use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError, Rewind};
 
 /// Round that advances in real time, played by people or replayed.
@@ -85,6 +86,17 @@ impl Session {
         };
         let ghost = self.ghost.as_ref().map(Playback::again);
         Self { ghost, ..again }
+    }
+
+    /// Makes a change of a playground that people play.
+    ///
+    /// # Errors
+    /// [`ChangeError`] if the level has a basket, the round is a replay, or there are too many bodies.
+    pub fn change(&mut self, change: Change) -> Result<(), ChangeError> {
+        match &mut self.player {
+            Player::People(round) => round.change(change),
+            Player::Replay(_) => Err(ChangeError::NoPlayground),
+        }
     }
 
     /// Returns the current state of the round.

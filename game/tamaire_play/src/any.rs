@@ -1,5 +1,6 @@
 //! Rounds with the dimension chosen at run time. They suit callers that do not access the bodies.
 
+use crate::playground::{Change, ChangeError, TimedChange};
 use crate::round::Hand;
 use crate::{InputFrame, Level, Progress, Round};
 use fuwafuwa::{DEFAULT_TICK, Dim2, Dim3, DimVector, Event, StepReport, Vec3};
@@ -36,6 +37,24 @@ impl AnyRound {
     /// See [`Round::step`].
     pub fn step(&mut self, frame: InputFrame) -> StepReport {
         both!(self, round => round.step(frame))
+    }
+
+    /// See [`Round::change`].
+    ///
+    /// # Errors
+    /// As [`Round::change`].
+    pub fn change(&mut self, change: Change) -> Result<(), ChangeError> {
+        both!(self, round => round.change(change))
+    }
+
+    /// See [`Round::changes`].
+    pub fn changes(&self) -> &[TimedChange] {
+        both!(self, round => round.changes())
+    }
+
+    /// Makes those of `changes` again that were made before the next tick.
+    pub(crate) fn change_again(&mut self, changes: &[TimedChange]) {
+        both!(self, round => round.change_again(changes))
     }
 
     /// See [`Round::level`].
@@ -76,9 +95,10 @@ impl AnyRound {
         both!(self, round => round.frames())
     }
 
-    /// Returns the hands of the players that have joined, in the order of the players.
+    /// Returns the hands of the players that have joined, in the order of the players. The forces on a hand are those
+    /// on all its parts together; on an axis on which a part moves opposite to the hand, its forces count opposite.
     pub fn hands(&self) -> Vec<Hand> {
-        both!(self, round => round.hands().map(Hand::from).collect())
+        both!(self, round => round.felt_hands())
     }
 
     /// Returns the positions of the nodes that were split in the last tick [m].

@@ -7,11 +7,14 @@
 //! - [`assists`]: easier variants of levels
 //! - [`rules`]: conditions and routes of a win
 //! - [`round`]: a round of a level
+//! - [`playground`]: what players change in a level without a basket
 //! - [`any`]: a round with its dimension chosen at run time
 //! - [`replay`]: recorded rounds
 //! - [`link`]: rounds and levels as links
 //! - [`bot`]: players that are programs
+//! - [`rewind`]: time that runs back in a round
 //! - [`way`]: ways to win a level
+//! - [`daily`]: the level of the day
 //!
 //! A window, a bot and a replay play in the same way: they pass one [`InputFrame`] per tick to
 //! [`Round::step`] and read the resulting state. A 2D round is a `Round<Dim2>`, a 3D round a `Round<Dim3>`;
@@ -44,9 +47,11 @@
 pub mod any;
 pub mod assists;
 pub mod bot;
+pub mod daily;
 pub mod input;
 pub mod level;
 pub mod link;
+pub mod playground;
 pub mod replay;
 pub mod rewind;
 pub mod round;

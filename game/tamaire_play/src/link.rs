@@ -17,7 +17,7 @@
 //! let Link::Round(replay) = Link::read(&sent)? else {
 //!     panic!("expected a round");
 //! };
-//! let mut playback = Playback::new(Arc::new(replay))?;
+//! let mut playback = Playback::new(Arc::from(replay))?;
 //! while !playback.is_over() {
 //!     playback.step()?;
 //! }
@@ -42,6 +42,7 @@ pub use error::{LinkError, MAX_LENGTH};
 pub use pasted::is_link;
 
 use crate::level::{hash_of, stem};
+use crate::playground::TimedChange;
 use crate::replay::{MAX_BYTES, MAX_NAME, VERSION};
 use crate::round::MAX_TICKS;
 use crate::{Level, Outcome, Replay, ReplayError, Route};
@@ -151,6 +152,7 @@ impl Replay {
             broken: outcome.map_or(0, |outcome| outcome.broken),
             torn: outcome.map_or(0, |outcome| outcome.torn),
             rewinds: self.rewinds,
+            changes: self.changes.clone(),
         };
         let sent = SentRound {
             game: self.game.clone(),
@@ -223,7 +225,7 @@ type SentOutcome = (u64, Route, f32, f32, usize, usize);
 
 /// Numbers of a round that are usually 0. Zeros at the end take no space, so that links to usual rounds stay as they
 /// were.
-#[derive(Copy, Clone, Default)]
+#[derive(Clone, Default)]
 struct Extras {
     /// [`Outcome::broken`]
     broken: usize,
@@ -231,10 +233,15 @@ struct Extras {
     torn: u32,
     /// [`Replay::rewinds`]
     rewinds: u32,
+    /// [`Replay::changes`]
+    changes: Vec<TimedChange>,
 }
 
 impl Serialize for Extras {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if !self.changes.is_empty() {
+            return (self.broken, self.torn, self.rewinds, &self.changes).serialize(serializer);
+        }
         match (self.broken, self.torn, self.rewinds) {
             (0, 0, 0) => serializer.serialize_unit(),
             (broken, 0, 0) => serializer.serialize_u64(broken as u64),
@@ -255,15 +262,19 @@ impl Extras {
             [] => (0, rest),
             rest => taken::<u32>(rest)?,
         };
-        let rewinds = if rest.is_empty() {
-            0
-        } else {
-            all::<u32>(rest)?
+        let (rewinds, rest) = match rest {
+            [] => (0, rest),
+            rest => taken::<u32>(rest)?,
+        };
+        let changes = match rest {
+            [] => Vec::new(),
+            rest => all::<Vec<TimedChange>>(rest)?,
         };
         let read = Self {
             broken,
             torn,
             rewinds,
+            changes,
         };
         // Another length than the written one is an error.
         let written = postcard::to_allocvec(&read).map_err(|_| LinkError::Damaged)?;
@@ -308,6 +319,7 @@ impl SentRound {
                 torn: extras.torn,
             }),
             rewinds: extras.rewinds,
+            changes: extras.changes,
             hashes: sent.hashes.iter().map(digits).collect(),
             frames: played.iter().map(|frame| frame.row()).collect(),
             scene,

@@ -1,6 +1,7 @@
 //! Recorded rounds, to be stored, watched, raced and shared.
 
 use crate::level::{LevelError, has_line, stem};
+use crate::playground::{MOST_CHANGES, TimedChange};
 use crate::round::{MAX_TICKS, start_targets};
 use crate::rules::is_zero;
 use crate::{AnyRound, InputFrame, Level, Outcome, Round};
@@ -40,6 +41,9 @@ pub struct Replay {
     /// Number of times that time ran back in the round. The replay contains only what was played on.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub rewinds: u32,
+    /// Changes of a playground, in the order of their ticks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<TimedChange>,
     /// Hexadecimal digits of the world's hash after every sixtieth tick and after the last tick. All sixteen
     /// digits, or the last four if the replay came from a link.
     pub hashes: Vec<String>,
@@ -101,6 +105,7 @@ impl Replay {
                 outcome.ticks + round.idle_ticks() == round.frames().len() as u64
             }),
             rewinds: round.rewinds(),
+            changes: round.played_changes().to_vec(),
             hashes: hashes.iter().map(|hash| format!("{hash:016x}")).collect(),
             frames: round.frames().iter().map(InputFrame::row).collect(),
             scene: level.scene().clone(),
@@ -191,6 +196,15 @@ impl Replay {
         let (found, expected) = (self.hashes.len(), marks(ticks));
         if found != expected {
             let reason = format!("expected {expected} hashes for {ticks} ticks, found {found}");
+            return Err(ReplayError::Text(reason));
+        }
+        let found = self.changes.len();
+        if found > MOST_CHANGES {
+            let reason = format!("expected at most {MOST_CHANGES} changes, found {found}");
+            return Err(ReplayError::Text(reason));
+        }
+        if !self.changes.is_sorted_by_key(|change| change.tick) {
+            let reason = "changes: expected them in the order of their ticks".into();
             return Err(ReplayError::Text(reason));
         }
         let is_digit = |digit: u8| matches!(digit, b'0'..=b'9' | b'a'..=b'f');
@@ -361,6 +375,9 @@ impl Playback {
     /// [`ReplayError`] if the world diverges from the replay.
     pub fn step(&mut self) -> Result<(), ReplayError> {
         let was_over = self.is_over();
+        if !was_over {
+            self.round.change_again(&self.replay.changes);
+        }
         self.round.step(self.replay.frame(self.tick));
         self.tick += 1;
         if was_over {

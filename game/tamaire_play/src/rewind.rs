@@ -24,6 +24,7 @@
 //! # Ok::<(), tamaire_play::level::LevelError>(())
 //! ```
 
+use crate::playground::TimedChange;
 #[cfg(doc)]
 use crate::round::MAX_TICKS;
 use crate::round::RoundState;
@@ -149,6 +150,8 @@ pub struct Rewind {
     marks: VecDeque<AnyState>,
     /// Inputs of the round when time began to run back.
     frames: Vec<InputFrame>,
+    /// Changes of a playground, likewise.
+    changes: Vec<TimedChange>,
     /// States that are shown next, in the order of their ticks; the last one comes first.
     shown: Vec<AnyState>,
     /// States before those, as far as they are computed.
@@ -165,6 +168,7 @@ impl Rewind {
             plan: Plan::for_copies_of(round),
             marks: VecDeque::from([AnyState::of(round)]),
             frames: Vec::new(),
+            changes: Vec::new(),
             shown: Vec::new(),
             before: Vec::new(),
             computing: None,
@@ -225,6 +229,7 @@ impl Rewind {
     /// Lets time run back from now on.
     pub fn begin(&mut self, round: &AnyRound) {
         self.frames = round.frames().to_vec();
+        self.changes = round.changes().to_vec();
         self.shown.clear();
         self.before.clear();
         self.computing = None;
@@ -236,6 +241,7 @@ impl Rewind {
         if let Some((past, end)) = &mut self.computing {
             if past.ticks() < *end {
                 let frame = self.frames.get(past.ticks() as usize);
+                past.change_again(&self.changes);
                 past.step(frame.copied().unwrap_or_default());
                 if past.ticks() < *end && past.ticks().is_multiple_of(self.plan.shown) {
                     self.before.push(AnyState::of(past));
@@ -273,6 +279,7 @@ impl Rewind {
     /// Lets time run forward again.
     pub fn end(&mut self) {
         self.frames = Vec::new();
+        self.changes = Vec::new();
         self.shown = Vec::new();
         self.before = Vec::new();
         self.computing = None;

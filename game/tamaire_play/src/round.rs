@@ -1,11 +1,12 @@
 //! A round: one attempt at a level.
 
+use crate::playground::{Change, MOST_CHANGES, TimedChange, ToolState};
 use crate::rules::Basket;
 use crate::{InputFrame, Level, PLAYERS, Progress};
 use fuwafuwa::inspect::is_hand;
 use fuwafuwa::{
-    DEFAULT_TICK, Dim, Dim3, DimAngular, DimVector, JointAnchor, JointHandle, Reaction, RigidBody,
-    RigidBodyHandle, RigidBodyRef, SoftBody, StepReport, Vec3, World,
+    DEFAULT_TICK, Dim, Dim3, DimAngular, DimVector, JointAnchor, JointHandle, Layers, Reaction,
+    RigidBody, RigidBodyHandle, RigidBodyRef, Shape, SoftBody, StepReport, Vec3, World,
 };
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::Machinery;
@@ -75,6 +76,12 @@ pub struct Round<D: Dim> {
     has_begun: bool,
     /// Number of times that time ran back.
     rewinds: u32,
+    /// Tool of the first player in a playground.
+    tool: ToolState,
+    /// Changes of a playground, in the order of their ticks.
+    changes: Vec<TimedChange>,
+    /// Changes to be made at the beginning of the next tick.
+    waiting: Vec<Change>,
 }
 
 /// State of a round at a tick, without its recording.
@@ -86,6 +93,7 @@ pub(crate) struct RoundState<D: Dim> {
     players: Vec<PlayerHand>,
     idle_ticks: u64,
     has_begun: bool,
+    tool: ToolState,
 }
 
 impl<D: Dim> RoundState<D> {
@@ -127,12 +135,19 @@ impl<D: Dim> Round<D> {
             idle_ticks: 0,
             has_begun: false,
             rewinds: 0,
+            tool: ToolState::default(),
+            changes: Vec::new(),
+            waiting: Vec::new(),
             level,
         }
     }
 
     /// Simulates a tick with the input `frame`.
     pub fn step(&mut self, frame: InputFrame) -> StepReport {
+        for change in std::mem::take(&mut self.waiting) {
+            // A change from a file that cannot be made changes nothing, so the playback differs from the recording.
+            let _made = self.make(change);
+        }
         self.let_players_in(&frame);
         self.has_begun |= frame.moves_a_hand(&self.targets);
         for player in 0..self.players.len() {
@@ -149,6 +164,7 @@ impl<D: Dim> Round<D> {
             }
         }
         let report = self.machinery.step(&mut self.world);
+        self.use_tool();
         if self.progress.outcome.is_some() {
             return report;
         }
@@ -176,6 +192,7 @@ impl<D: Dim> Round<D> {
             players: self.players.clone(),
             idle_ticks: self.idle_ticks,
             has_begun: self.has_begun,
+            tool: self.tool.clone(),
         }
     }
 
@@ -190,6 +207,7 @@ impl<D: Dim> Round<D> {
             "the recording holds the earlier ticks"
         );
         self.frames.truncate(ticks);
+        self.changes.retain(|change| (change.tick as usize) < ticks);
         self.hashes.truncate(ticks / 60);
         self.world = state.world;
         self.machinery = state.machinery;
@@ -197,6 +215,8 @@ impl<D: Dim> Round<D> {
         self.players = state.players;
         self.idle_ticks = state.idle_ticks;
         self.has_begun = state.has_begun;
+        self.tool = state.tool;
+        self.waiting.clear();
     }
 
     /// Returns a round of the same level that goes on from an earlier state. It has no recording.
@@ -215,7 +235,83 @@ impl<D: Dim> Round<D> {
             idle_ticks: state.idle_ticks,
             has_begun: state.has_begun,
             rewinds: 0,
+            tool: state.tool,
+            changes: Vec::new(),
+            waiting: Vec::new(),
         }
+    }
+
+    /// Returns the changes of a playground, in the order of their ticks.
+    pub fn changes(&self) -> &[TimedChange] {
+        &self.changes
+    }
+
+    /// Returns the changes of a playground that have been made.
+    pub(crate) fn played_changes(&self) -> &[TimedChange] {
+        let ticks = self.frames.len();
+        let played = { &self.changes }.partition_point(|change| (change.tick as usize) < ticks);
+        &self.changes[..played]
+    }
+
+    /// Makes those of `changes` again that were made before the next tick.
+    pub(crate) fn change_again(&mut self, changes: &[TimedChange]) {
+        let tick = self.world.ticks();
+        let due = changes
+            .iter()
+            .filter(|change| u64::from(change.tick) == tick);
+        due.for_each(|change| self.note_change(change.change));
+    }
+
+    /// Notes a change of a playground, to be made at the beginning of the next tick, and records it.
+    pub(crate) fn note_change(&mut self, change: Change) {
+        self.waiting.push(change);
+        let tick = self.world.ticks();
+        if tick == self.frames.len() as u64 && self.changes.len() < MOST_CHANGES {
+            let tick = tick as u32;
+            self.changes.push(TimedChange { tick, change });
+        }
+    }
+
+    /// Returns the number of bodies that will be added at the beginning of the next tick.
+    pub(crate) fn waiting_bodies(&self) -> usize {
+        let adds = |change: &&Change| matches!(change, Change::Add { .. });
+        self.waiting.iter().filter(adds).count()
+    }
+
+    pub(crate) fn world_mut(&mut self) -> &mut World<D> {
+        &mut self.world
+    }
+
+    pub(crate) fn tool_mut(&mut self) -> &mut ToolState {
+        &mut self.tool
+    }
+
+    /// Returns the first player's hand.
+    pub(crate) fn first_hand(&self) -> RigidBodyHandle {
+        self.players[0].hand
+    }
+
+    pub(crate) fn position_of_hand(&self) -> D::Vector {
+        self.hand(self.players[0].hand).position()
+    }
+
+    pub(crate) fn layers_of_hand(&self) -> Layers {
+        self.starts[0].hand.layers
+    }
+
+    pub(crate) fn radius_of_hand(&self) -> f32 {
+        self.hand(self.players[0].hand).local_shape().inradius()
+    }
+
+    /// Replaces the first player's hand by a ball with a radius [m]. It has the same layers, position and target.
+    pub(crate) fn resize_hand(&mut self, radius: f32) -> Result<(), fuwafuwa::Error> {
+        let old = self.players[0].hand;
+        let definition = RigidBody {
+            shape: Shape::ball(radius),
+            ..self.hand(old).definition()
+        };
+        self.players[0].hand = self.world.add_rigid_body(definition)?;
+        self.world.remove(old).map(drop)
     }
 
     /// Counts a rewind of this round.
@@ -241,6 +337,26 @@ impl<D: Dim> Round<D> {
     /// Returns the hands of the players that have joined, in the order of the players.
     pub fn hands(&self) -> impl ExactSizeIterator<Item = RigidBodyRef<'_, D>> {
         self.players.iter().map(|player| self.hand(player.hand))
+    }
+
+    /// See [`AnyRound::hands`](crate::AnyRound::hands).
+    pub(crate) fn felt_hands(&self) -> Vec<Hand> {
+        let hands = self.players.iter().zip(&self.starts);
+        let felt = hands.map(|(player, start)| {
+            let mut felt = Hand::from(self.hand(player.hand));
+            for (&part, &(number, _)) in player.followers.iter().zip(&start.followers) {
+                let text = &self.level.scene().hand[number];
+                let [ahead, at_rest] = [[1.0; 3], [0.0; 3]].map(|by| Vec3::from(text.following(by)));
+                let way = ahead - at_rest;
+                let forces = Hand::from(self.hand(part)).reactions;
+                for (sum, force) in felt.reactions.iter_mut().zip(forces) {
+                    sum.contact += way * force.contact;
+                    sum.coupling += way * force.coupling;
+                }
+            }
+            felt
+        });
+        felt.collect()
     }
 
     /// Returns the moving parts of the room.
@@ -469,6 +585,29 @@ mod tests {
             torn: 0,
         });
         assert_eq!(Replay::of(&round).outcome, None);
+    }
+
+    #[test]
+    fn forces_on_a_mirrored_part_count_opposite() {
+        let level = Arc::new(Level::open("mirror-hands").unwrap());
+        let path = crate::level::PATH.iter().find(|known| known.id == level.id);
+        let way = path.unwrap().ways().way.remove(0);
+        let mut round = Round::<Dim2>::new(level);
+        // Both hands press the body from its sides.
+        for tick in 0..210 {
+            round.step(way.frame(tick));
+        }
+        let [leader, follower] = {
+            let player = &round.players[0];
+            [player.hand, player.followers[0]].map(|hand| Hand::from(round.hand(hand)))
+        };
+        let felt = &round.felt_hands()[0];
+        let pushes = |hand: &Hand| hand.reactions.iter().map(|reaction| reaction.contact.x).sum::<f32>();
+        assert!(pushes(&leader) < -1.0 && pushes(&follower) > 1.0, "they press");
+        let expected = pushes(&leader) - pushes(&follower);
+        assert!((pushes(felt) - expected).abs() < 1e-3 * expected.abs());
+        let lifts = |hand: &Hand| hand.reactions.iter().map(|reaction| reaction.contact.y).sum::<f32>();
+        assert!((lifts(felt) - lifts(&leader) - lifts(&follower)).abs() < 1e-2);
     }
 
     #[test]

@@ -50,6 +50,22 @@ impl Blade<Dim3> {
 }
 
 impl<D: Dim> Blade<D> {
+    /// Returns the area that an edge [m] sweeps when it moves by a vector [m]. In 2D only the midpoint of the edge is
+    /// used.
+    pub fn swept(edge: [D::Vector; 2], by: D::Vector) -> Self {
+        let [from, to] = edge.map(|end| end.to_vec3());
+        let (corner, along) = match D::N {
+            2 => (0.5 * (from + to) - 0.5 * Vec3::Z, Vec3::Z),
+            _ => (from, to - from),
+        };
+        Self {
+            corner,
+            across: by.to_vec3(),
+            along,
+            dim: PhantomData,
+        }
+    }
+
     /// Returns whether the line segment between two points [m] crosses the blade.
     fn crosses(&self, a: Vec3, b: Vec3) -> bool {
         let normal = self.across.cross(self.along);
@@ -193,4 +209,31 @@ fn corner_of_face<D: Dim>(voxel: Point, axis: usize, corner: usize) -> Point {
         at[other] += (corner >> bit & 1) as i32;
     }
     at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Dim2, Dim3};
+
+    #[test]
+    fn swept_edge_is_a_segment_in_2d_and_a_parallelogram_in_3d() {
+        let (from, by) = (Vec2::new(0.2, -0.3), Vec2::new(0.5, 0.1));
+        let ends = [from - Vec2::Y, from + Vec2::Y];
+        let swept = Blade::<Dim2>::swept(ends, by);
+        assert_eq!(swept, Blade::segment(from, from + by));
+
+        let (low, high) = (Vec3::new(0.1, -0.4, 0.2), Vec3::new(0.1, 0.4, 0.3));
+        let by = Vec3::new(0.7, 0.0, -0.2);
+        let swept = Blade::<Dim3>::swept([low, high], by);
+        assert!(swept.crosses(Vec3::new(0.4, 0.0, -1.0), Vec3::new(0.4, 0.0, 1.0)));
+        assert!(!swept.crosses(Vec3::new(0.9, 0.0, -1.0), Vec3::new(0.9, 0.0, 1.0)));
+        assert!(!swept.crosses(Vec3::new(0.4, 0.6, -1.0), Vec3::new(0.4, 0.6, 1.0)));
+        let other = Blade::parallelogram(low, high - low, by);
+        for k in 0..20 {
+            let at = Vec3::new(0.05 * k as f32, 0.07 * (k as f32 - 10.0), 0.0);
+            let [a, b] = [at - Vec3::Z, at + Vec3::Z];
+            assert_eq!(swept.crosses(a, b), other.crosses(a, b), "{at}");
+        }
+    }
 }

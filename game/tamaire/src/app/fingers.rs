@@ -3,7 +3,7 @@
 
 use crate::game::ScreenButton;
 use crate::input::Action;
-use egui::{Event, Pos2, TouchDeviceId, TouchId, TouchPhase};
+use egui::{Event, Pos2, Rect, TouchDeviceId, TouchId, TouchPhase};
 use std::collections::BTreeMap;
 
 /// Distance that a finger must move before its movement is taken as either vertical or horizontal [points].
@@ -51,11 +51,12 @@ pub(super) struct DragDistance {
 
 impl Fingers {
     /// Reads the touch events of a frame. Returns the entries of `buttons` on which a finger was put down.
-    /// Leaves out the finger that egui treats as a mouse.
+    /// Leaves out the finger that egui treats as a mouse. A finger that is put down on one of `covers` does not point.
     pub(super) fn read_events(
         &mut self,
         events: &[Event],
         buttons: &[ScreenButton],
+        covers: &[Rect],
     ) -> Vec<ScreenButton> {
         self.drawn = DragDistance::default();
         let mut pressed: Vec<ScreenButton> = Vec::new();
@@ -88,6 +89,8 @@ impl Fingers {
                         }
                         self.holding.insert(finger, button.action);
                     }
+                    None if phase == TouchPhase::Start
+                        && covers.iter().any(|cover| cover.contains(pos)) => {}
                     None => self.touch(finger, phase, pos),
                 }
             }
@@ -180,7 +183,7 @@ mod tests {
             pos: pos2(x, y),
             force: None,
         });
-        fingers.read_events(&events.collect::<Vec<_>>(), &[]);
+        fingers.read_events(&events.collect::<Vec<_>>(), &[], &[]);
         let DragDistance { up, right } = fingers.take();
         [up, right]
     }

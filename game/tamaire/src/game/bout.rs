@@ -1,5 +1,6 @@
 //! The current round, which stays visible behind menus: its session, camera and display state.
 
+use super::Toys;
 use super::lesson::Tutorial;
 use crate::look::{Cutaway, Effects};
 use crate::session::Session;
@@ -34,6 +35,8 @@ pub struct CurrentRound {
     pub stepping: bool,
     /// Whether the mouse holds the button on the screen that lets time run back.
     pub is_rewind_pressed: bool,
+    /// What the player has chosen in a playground.
+    pub toys: Toys,
     /// Outcome of a won round, and whether it is the player's best for its route. `None` for replays.
     pub won: Option<(Outcome, bool)>,
     pub(super) lesson: Tutorial,
@@ -53,6 +56,7 @@ impl CurrentRound {
     /// Creates the state of a new round.
     pub(crate) fn new(session: Session) -> Self {
         Self {
+            toys: Toys::of(session.round()),
             session,
             is_ghost_chosen: false,
             effects: Effects::default(),
@@ -77,6 +81,7 @@ impl CurrentRound {
     /// Replaces the round and keeps the camera. `time` is the time since the start of the game [s].
     pub(crate) fn begin(&mut self, session: Session, time: f64) {
         let has_failed = self.is_given_up_for(&session);
+        self.toys = Toys::of(session.round());
         self.session = session;
         self.is_ghost_chosen = false;
         self.watch_speed = 1.0;

@@ -43,6 +43,8 @@ pub struct Controls {
     pub scan: Scan,
     /// Buttons on the screen in the last frame.
     pub buttons: Vec<ScreenButton>,
+    /// Other parts of the screen on which fingers do not point, in the last frame.
+    pub covers: Vec<Rect>,
     /// Action that the next pressed key or button is bound to.
     pub rebinding: Option<Action>,
 }
@@ -59,6 +61,7 @@ impl Controls {
             latch: StickyKeys::default(),
             scan: Scan::default(),
             buttons: Vec::new(),
+            covers: Vec::new(),
             rebinding: None,
         }
     }

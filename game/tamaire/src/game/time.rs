@@ -27,6 +27,7 @@ impl Game {
         };
         let slowed = if self.bout.slow { SLOW } else { 1.0 };
         let pace = slowed * watch_speed * self.settings.speed;
+        self.press_tool();
         if self.wants_rewind() {
             self.run_back(seconds);
             self.bout.effects.advance(seconds);

@@ -56,6 +56,8 @@ pub enum Action {
     Slow,
     /// Advances by one tick.
     Step,
+    /// Uses the tool of the hand while it is held, in a playground.
+    Tool,
     /// Lets a second player join with this device, or leave.
     Join,
     /// In 3D: raises the hand off the floor.
@@ -76,7 +78,7 @@ pub enum Action {
 
 impl Action {
     /// All actions, in the order of the settings.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Up,
         Self::Down,
         Self::Left,
@@ -87,6 +89,7 @@ impl Action {
         Self::Elements,
         Self::Slow,
         Self::Step,
+        Self::Tool,
         Self::Join,
         Self::Raise,
         Self::Lower,

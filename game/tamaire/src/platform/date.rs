@@ -11,6 +11,11 @@ pub fn local(time: SystemTime) -> String {
     here.strftime("%Y-%m-%d %H:%M").to_string()
 }
 
+/// Returns the date of today in the local time zone as year, month and day.
+pub fn today() -> String {
+    local(SystemTime::now()).chars().take(10).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -39,7 +39,7 @@ use here::{breath, clipboard, date, dialog, screen, sound, writer};
 pub use awake::keep_awake;
 pub use breath::Yielder;
 pub use clipboard::Clipboard;
-pub use date::local as local_date;
+pub use date::{local as local_date, today};
 pub use dialog::{Dialog, IS_THERE as HAS_DIALOG};
 pub use files::{Damage, Files, StorageEvent};
 pub use given::{DialogResult, OpenRequest, dropped};

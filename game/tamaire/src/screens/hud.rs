@@ -1,7 +1,7 @@
 //! Overlay of a round: clock, goals, fill level of the basket, and unusual modes.
 
 use super::buttons::{self, EDGE, GAP, HIGH, pale};
-use super::{goals, icons};
+use super::{goals, icons, toys};
 use crate::game::Game;
 use crate::input::Action;
 use app_shell::Theme;
@@ -151,7 +151,7 @@ fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
     let (theme, painter) = (game.theme(), ui.painter());
     let mut bottom = match game.public {
         Some(_) => screen.bottom() - STAND,
-        None => screen.bottom(),
+        None => screen.bottom() - toys::height(game, ui),
     };
     for (index, (line, is_missing)) in game.lesson().into_iter().enumerate().rev() {
         let id = egui::Id::unique(("lesson", index));
@@ -187,7 +187,7 @@ fn draw_caption(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
     let galley = painter.layout(text, font, theme.ink, width);
     let low = match game.public {
         Some(_) => screen.bottom() - STAND,
-        None => screen.bottom(),
+        None => screen.bottom() - toys::height(game, ui),
     };
     let size = galley.size() + scale * vec2(32.0, 16.0);
     let middle = pos2(screen.center().x, low - scale * GAP - 0.5 * size.y);

@@ -228,3 +228,75 @@ fn polygon(painter: &Painter, at: Pos2, scale: f32, ink: Color32, corners: &[[f3
     let corners = corners.iter().map(|&[x, y]| at + scale * vec2(x, y));
     painter.add(Shape::convex_polygon(corners.collect(), ink, Stroke::NONE));
 }
+
+/// Draws a round hand that pushes: a ball with an arrow.
+pub(super) fn hand(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    painter.circle_filled(at - scale * vec2(4.0, 0.0), 7.0 * scale, ink);
+    let tip = at + scale * vec2(6.0, 0.0);
+    polygon(
+        painter,
+        tip,
+        scale,
+        ink,
+        &[[0.0, -5.0], [6.0, 0.0], [0.0, 5.0]],
+    );
+}
+
+/// Draws two jaws that hold something.
+pub(super) fn grab(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    let stroke = Stroke::new(3.0 * scale, ink);
+    for side in [-1.0, 1.0] {
+        let jaw = [[3.0, -9.0], [9.0, -4.0], [9.0, 4.0], [3.0, 9.0]];
+        let jaw = jaw.map(|[x, y]| at + scale * vec2(side * x, y));
+        painter.add(Shape::line(jaw.to_vec(), stroke));
+    }
+    painter.circle_filled(at, 4.0 * scale, ink);
+}
+
+/// Draws a knife.
+pub(super) fn knife(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    polygon(
+        painter,
+        at,
+        scale,
+        ink,
+        &[
+            [-10.0, 8.0],
+            [6.0, -10.0],
+            [9.0, -7.0],
+            [4.0, 2.0],
+            [-6.0, 10.0],
+        ],
+    );
+    let handle = [at + scale * vec2(4.0, 2.0), at + scale * vec2(10.0, 9.0)];
+    painter.line_segment(handle, Stroke::new(4.0 * scale, ink));
+}
+
+/// Draws a pin.
+pub(super) fn pin(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    painter.circle_filled(at - scale * vec2(0.0, 5.0), 6.0 * scale, ink);
+    let needle = [at, at + scale * vec2(0.0, 11.0)];
+    painter.line_segment(needle, Stroke::new(2.5 * scale, ink));
+}
+
+/// Draws three sliders.
+pub(super) fn sliders(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    for (y, knob) in [(-6.0, 4.0), (0.0, -4.0), (6.0, 2.0)] {
+        let line = [-9.0, 9.0].map(|x| at + scale * vec2(x, y));
+        painter.line_segment(line, Stroke::new(2.0 * scale, ink));
+        painter.circle_filled(at + scale * vec2(knob, y), 3.2 * scale, ink);
+    }
+}
+
+/// Draws a broom.
+pub(super) fn broom(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    let stick = [at + scale * vec2(8.0, -10.0), at];
+    painter.line_segment(stick, Stroke::new(3.0 * scale, ink));
+    polygon(
+        painter,
+        at,
+        scale,
+        ink,
+        &[[-2.0, -3.0], [3.0, 2.0], [-3.0, 10.0], [-10.0, 3.0]],
+    );
+}

@@ -137,6 +137,7 @@ fn lock_text(game: &Game, lock: Lock) -> String {
 fn heading(ui: &mut Ui, game: &Game, section: Section, journey: &Journey, lock: Option<Lock>) {
     let (theme, said) = (game.theme(), game.words());
     let (title, stars) = match section {
+        Section::Day => (said.daily.to_string(), None),
         Section::First => (said.first_levels.to_string(), None),
         Section::Chapter(number) => {
             let chapter = CHAPTERS[number - 1];

@@ -23,6 +23,7 @@ mod settings;
 mod stand;
 mod title;
 mod together;
+mod toys;
 mod watching;
 mod widgets;
 

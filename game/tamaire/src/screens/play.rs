@@ -1,6 +1,6 @@
 //! Screen of a running round.
 
-use super::{hopeless, hud, offers, watching};
+use super::{hopeless, hud, offers, toys, watching};
 use crate::game::{Game, Screen};
 use crate::look::{DrawOptions, Hint, Stage, view_of_level};
 use app_shell::View;
@@ -24,6 +24,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             .animate_bool_with_time(ui.scope_id().with("room below"), is_below, duration);
     view.centre[1] -= 0.1 * share * view.height();
     let view = beside_cards(game, ui, view, duration);
+    let view = above_toys(game, ui, view);
     game.bout.view = Some(view);
     let theme = game.theme();
     // Until the first level has been won, the hint shows how to push the body into the basket, and again if
@@ -111,7 +112,17 @@ fn beside_cards(game: &Game, ui: &Ui, view: View, duration: f32) -> View {
     ))
 }
 
-/// Shows the overlay of a round.
+/// Returns the view of a 2D playground with the whole room above the tools.
+fn above_toys(game: &Game, ui: &Ui, view: View) -> View {
+    let shares_screen = matches!(game.screen(), Screen::Play | Screen::Paused);
+    if view.space.is_some() || !shares_screen {
+        return view;
+    }
+    let (taken, screen) = (toys::height(game, ui), ui.max_rect());
+    let share = 1.0 - taken / screen.height();
+    view.shrunk(share).displaced(vec2(0.0, -0.5 * taken))
+}
+
 /// Covers the room with a pale veil while time runs back, with rings that close in on the hand.
 fn veil(game: &Game, ui: &Ui) {
     let violet = egui::Color32::from_rgb(150, 120, 220);
@@ -129,12 +140,14 @@ fn veil(game: &Game, ui: &Ui) {
     }
 }
 
+/// Shows the overlay of a round.
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     if game.bout.session.is_rewinding() {
         veil(game, ui);
     }
     let mut is_on_button = hud::show(game, ui);
     is_on_button |= hopeless::show(game, ui);
+    is_on_button |= toys::show(game, ui);
     offers::show(game, ui);
     watching::show(game, ui);
     if game.bout.session.is_played() && !is_on_button {

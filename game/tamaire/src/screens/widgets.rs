@@ -85,8 +85,8 @@ pub fn card<R>(ui: &mut Ui, theme: &Theme, contents: impl FnOnce(&mut Ui) -> R) 
     frame.show(ui, contents).inner
 }
 
-/// Shows a slider with its name on the left and its value on the right. The left and right arrow keys move it
-/// while it has the focus.
+/// Shows a slider with its name on the left and its value in percent on the right. The left and right arrow keys
+/// move it while it has the focus.
 pub fn slider(
     ui: &mut Ui,
     theme: &Theme,
@@ -96,6 +96,21 @@ pub fn slider(
     high: f32,
     step: f32,
 ) -> Response {
+    let percent = |value: f32| format!("{:.0} %", 100.0 * value);
+    slider_with(ui, theme, name, value, [low, high, step], percent)
+}
+
+/// Shows a slider as [`slider`] does, with a value from the first to the second number of `range` in steps of the
+/// third one, and the text of the value on the right.
+pub fn slider_with(
+    ui: &mut Ui,
+    theme: &Theme,
+    name: &str,
+    value: &mut f32,
+    range: [f32; 3],
+    text: impl Fn(f32) -> String,
+) -> Response {
+    let [low, high, step] = range;
     row(ui, theme, name, |ui| {
         let width = (ui.available_width() - 84.0).max(60.0);
         let (mut response, asked) = track(ui, theme, name, *value, [low, high], step, width);
@@ -106,7 +121,7 @@ pub fn slider(
                 response.mark_changed();
             }
         }
-        let text = format!("{:.0} %", 100.0 * *value);
+        let text = text(*value);
         let font = FontId::proportional(20.0);
         let (rect, _) = ui.allocate_exact_size(vec2(74.0, 36.0), Sense::hover());
         ui.painter().text(

@@ -8,6 +8,8 @@ use crate::settings::Quality;
 use force_feedback::{Ability, Stop};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_scenes::import::{ImportNote, NoteKind};
+use fuwafuwa_scenes::scene::Form;
+use tamaire_play::playground::{Stuff, Tool};
 use tamaire_play::{Assist, Joints, Route};
 
 pub(super) const WORDS: Words = Words {
@@ -93,6 +95,7 @@ pub(super) const WORDS: Words = Words {
         1 => format!("Opens with one more star in chapter {before}"),
         _ => format!("Opens with {missing} more stars in chapter {before}"),
     },
+    daily: "Level of the day",
     first_levels: "Classic and playground",
     more_levels: "More levels",
     own_levels: "Your levels",
@@ -236,6 +239,7 @@ pub(super) const WORDS: Words = Words {
         Action::Elements => "Elements",
         Action::Slow => "Slow motion",
         Action::Step => "Single step",
+        Action::Tool => "Use the tool (playground)",
         Action::Join => "Second player",
         Action::Raise => "Move up (3D)",
         Action::Lower => "Move down (3D)",
@@ -415,6 +419,32 @@ pub(super) const WORDS: Words = Words {
             "Pale is at rest, red is strained. It tears where the strain is too great."
         }
     },
+    stuff: |stuff| match stuff {
+        Stuff::Jelly => "Jelly",
+        Stuff::Rubber => "Rubber",
+        Stuff::Biscuit => "Biscuit",
+        Stuff::Clay => "Clay",
+        Stuff::Stone => "Stone",
+    },
+    add_form: |form| match form {
+        Form::Ball | Form::Empty => "Add a ball",
+        Form::Box => "Add a box",
+        Form::Ring => "Add a ring",
+        Form::Heart => "Add a heart",
+        Form::Flower => "Add a flower",
+    },
+    tool: |tool| match tool {
+        Tool::Push => "Push",
+        Tool::Grab => "Grab: press and hold",
+        Tool::Knife => "Knife: press and hold",
+        Tool::Pin => "Pin: press",
+    },
+    sliders: "Gravity, air, hand",
+    clear: "Clear the room",
+    gravity: "Gravity [m/s²]",
+    air: "Air drag [1/s]",
+    hand_size: "Hand radius [cm]",
+    room_is_full: "The room is full.",
     first_move: "The ghost shows a first move.",
     one_hand: "This level has only one hand, so one player plays.",
 };

@@ -8,8 +8,10 @@ use crate::settings::Quality;
 use force_feedback::{Ability, Stop};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_scenes::import::{ImportNote, NoteKind};
+use fuwafuwa_scenes::scene::Form;
 use tamaire_play::level::LevelError;
 use tamaire_play::link::{LinkError, MAX_LENGTH};
+use tamaire_play::playground::{Stuff, Tool};
 use tamaire_play::{Assist, Joints, ReplayError, Route};
 
 pub(super) const WORDS: Words = Words {
@@ -91,6 +93,7 @@ pub(super) const WORDS: Words = Words {
     chapter: |number, name| format!("{number}　{name}"),
     stars: |earned, all| format!("★ {earned}／{all}"),
     opens_with: |missing, before| format!("{before}章で あと★{missing}こで ひらく"),
+    daily: "きょうの ステージ",
     first_levels: "クラシックと遊び場",
     more_levels: "ほかのステージ",
     own_levels: "じぶんのステージ",
@@ -235,6 +238,7 @@ pub(super) const WORDS: Words = Words {
         Action::Elements => "要素を見る",
         Action::Slow => "スロー",
         Action::Step => "コマおくり",
+        Action::Tool => "道具を つかう（おすなば）",
         Action::Join => "ふたりで",
         Action::Raise => "上げる（3D）",
         Action::Lower => "下げる（3D）",
@@ -417,6 +421,32 @@ pub(super) const WORDS: Words = Words {
             "しろっぽい ところは らく、あかい ところは ひっぱられている。むりが かかりすぎると ちぎれる。"
         }
     },
+    stuff: |stuff| match stuff {
+        Stuff::Jelly => "ゼリー",
+        Stuff::Rubber => "ゴム",
+        Stuff::Biscuit => "ビスケット",
+        Stuff::Clay => "ねんど",
+        Stuff::Stone => "石",
+    },
+    add_form: |form| match form {
+        Form::Ball | Form::Empty => "ボールを だす",
+        Form::Box => "はこを だす",
+        Form::Ring => "わっかを だす",
+        Form::Heart => "ハートを だす",
+        Form::Flower => "花を だす",
+    },
+    tool: |tool| match tool {
+        Tool::Push => "おす",
+        Tool::Grab => "つかむ：おしている あいだ",
+        Tool::Knife => "ナイフ：おしている あいだ",
+        Tool::Pin => "ピン：おす",
+    },
+    sliders: "重力・空気・手",
+    clear: "ぜんぶ かたづける",
+    gravity: "重力［m/s²］",
+    air: "空気抵抗［1/s］",
+    hand_size: "手の半径［cm］",
+    room_is_full: "部屋が いっぱいです。",
     first_move: "おばけが さいしょの うごきを みせるよ。",
     one_hand: "このステージの手は ひとつだけなので、ひとりであそびます。",
 };

@@ -5,8 +5,10 @@ use crate::settings::Quality;
 use force_feedback::{Ability, Calibration, Stop};
 use fuwafuwa_render::frame::ElementColour;
 use fuwafuwa_scenes::import::ImportNote;
+use fuwafuwa_scenes::scene::Form;
 use tamaire_play::level::LevelError;
 use tamaire_play::link::LinkError;
+use tamaire_play::playground::{Stuff, Tool};
 use tamaire_play::{Assist, Outcome, ReplayError, Route, Wish};
 
 /// Texts of the game in one language.
@@ -39,6 +41,7 @@ pub struct Words {
     pub stars: fn(usize, usize) -> String,
     /// How a locked chapter opens: number of missing stars, and number of the chapter before.
     pub opens_with: fn(usize, usize) -> String,
+    pub daily: &'static str,
     pub first_levels: &'static str,
     pub more_levels: &'static str,
     pub own_levels: &'static str,
@@ -177,6 +180,17 @@ pub struct Words {
     pub ending: &'static str,
     /// Explanation of the element view by its colours: size of the elements, or strain.
     pub elements_caption: fn(ElementColour) -> &'static str,
+    /// Names of the materials of a playground.
+    pub stuff: fn(Stuff) -> &'static str,
+    /// Buttons that add a shape.
+    pub add_form: fn(Form) -> &'static str,
+    pub tool: fn(Tool) -> &'static str,
+    pub sliders: &'static str,
+    pub clear: &'static str,
+    pub gravity: &'static str,
+    pub air: &'static str,
+    pub hand_size: &'static str,
+    pub room_is_full: &'static str,
     /// Notice when a ghost shows the first move of the level.
     pub first_move: &'static str,
     /// Missing keys of one of two players at a keyboard.

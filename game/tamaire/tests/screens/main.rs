@@ -17,4 +17,5 @@ mod shelf;
 mod space;
 mod stand;
 mod told;
+mod toys;
 mod window;

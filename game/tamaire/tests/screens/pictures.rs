@@ -105,6 +105,23 @@ fn portrait_screens_match_pictures() {
 }
 
 #[test]
+fn playground_matches_pictures() {
+    let mut window = open(Files::nowhere(), vec2(704.0, 440.0), 1.0);
+    start(&mut window, "sandbox");
+    frames(&mut window, 3);
+    pictures(&mut window, "playground");
+}
+
+#[test]
+fn portrait_playground_matches_picture() {
+    let mut window = open(Files::nowhere(), vec2(390.0, 844.0), 1.0);
+    start(&mut window, "sandbox-3d");
+    window.get_by_label("Gravity, air, hand").click();
+    frames(&mut window, 4);
+    picture(&mut window, "upright_playground");
+}
+
+#[test]
 fn ending_matches_pictures() {
     take_ending("ending", vec2(704.0, 440.0));
 }

@@ -2,9 +2,11 @@
 
 mod assists;
 mod bots;
+mod daily;
 mod levels;
 mod links;
 mod models;
 mod pictures;
+mod playground;
 mod rewind;
 mod ways;

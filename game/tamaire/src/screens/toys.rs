@@ -1,0 +1,308 @@
+//! Tools of a playground: materials and shapes to add, tools of the hand, and sliders.
+
+use super::buttons::{EDGE, GAP, HIGH, pale};
+use super::widgets::{card, slider_with};
+use super::{hud, icons};
+use crate::game::Game;
+use app_shell::Theme;
+use app_shell::widgets::note_hovered;
+use egui::{
+    Color32, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, UiBuilder, Vec2, WidgetInfo,
+    pos2, vec2,
+};
+use fuwafuwa::Vec3;
+use fuwafuwa_scenes::scene::Form;
+use std::f32::consts::TAU;
+use tamaire_play::playground::{Change, Stuff, Tool};
+use tamaire_sound::Menu;
+
+/// Shapes that can be added.
+const FORMS: [Form; 5] = [Form::Ball, Form::Box, Form::Ring, Form::Heart, Form::Flower];
+/// Tools of the hand.
+const TOOLS: [Tool; 4] = [Tool::Push, Tool::Grab, Tool::Knife, Tool::Pin];
+/// Distance of an added body from the upper end of the room [m].
+const BELOW_TOP: f32 = 0.35;
+/// Width of the card with the sliders [points].
+const CARD: f32 = 420.0;
+/// Height of the card with the sliders [points].
+const CARD_HIGH: f32 = 250.0;
+
+/// A button of the playground.
+#[derive(Copy, Clone, PartialEq)]
+enum Toy {
+    Stuff(Stuff),
+    Form(Form),
+    Tool(Tool),
+    Sliders,
+    Clear,
+}
+
+impl Toy {
+    /// All buttons, in order.
+    fn all() -> impl Iterator<Item = Self> {
+        let stuffs = Stuff::ALL.map(Self::Stuff).into_iter();
+        let others = [Self::Sliders, Self::Clear];
+        stuffs
+            .chain(FORMS.map(Self::Form))
+            .chain(TOOLS.map(Self::Tool))
+            .chain(others)
+    }
+
+    fn name(self, game: &Game) -> String {
+        let said = game.words();
+        match self {
+            Self::Stuff(stuff) => (said.stuff)(stuff).into(),
+            Self::Form(form) => (said.add_form)(form).into(),
+            Self::Tool(tool) => (said.tool)(tool).into(),
+            Self::Sliders => said.sliders.into(),
+            Self::Clear => said.clear.into(),
+        }
+    }
+
+    fn is_chosen(self, game: &Game) -> bool {
+        let toys = &game.bout.toys;
+        match self {
+            Self::Stuff(stuff) => stuff == toys.stuff,
+            Self::Tool(tool) => tool == toys.tool,
+            Self::Sliders => toys.has_sliders,
+            Self::Form(_) | Self::Clear => false,
+        }
+    }
+}
+
+/// Shows the tools of a playground, and draws the tool at the hand. Returns whether the mouse is over them.
+pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
+    game.controls.covers.clear();
+    game.bout.toys.is_pointer_down = false;
+    if !game.is_in_playground() {
+        return false;
+    }
+    draw_tool(game, ui.painter());
+    let scale = hud::scale(game, ui);
+    let places = places(ui.max_rect(), scale);
+    let mut is_over = false;
+    for (toy, rect) in Toy::all().zip(places) {
+        game.controls.covers.push(rect);
+        let response = ui.interact(rect, ui.scope_id().with(toy.name(game)), Sense::CLICK);
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, toy.name(game)));
+        note_hovered(ui, &response);
+        is_over |= response.hovered();
+        draw(game, ui.painter(), toy, rect, response.hovered());
+        if response.clicked() {
+            press(game, toy);
+        }
+    }
+    if game.bout.toys.has_sliders {
+        is_over |= sliders(game, ui, scale);
+    }
+    let covers = &game.controls.covers;
+    let is_free = |at: Pos2| !covers.iter().any(|cover| cover.contains(at));
+    game.bout.toys.is_pointer_down = ui.input(|input| {
+        let pointer = &input.pointer;
+        pointer.primary_down() && pointer.press_origin().is_some_and(is_free)
+    });
+    is_over
+}
+
+/// Height of the tools at the lower edge [points]; 0 outside a playground.
+pub(super) fn height(game: &Game, ui: &Ui) -> f32 {
+    if !game.is_in_playground() {
+        return 0.0;
+    }
+    let (screen, scale) = (ui.max_rect(), hud::scale(game, ui));
+    let top = places(screen, scale).map(|place| place.top());
+    screen.bottom() - top.fold(screen.bottom(), f32::min)
+}
+
+/// Returns the places of the buttons: in rows at the lower edge, the last row lowest.
+fn places(screen: Rect, scale: f32) -> impl Iterator<Item = Rect> {
+    let side = scale * HIGH;
+    let step = side + scale * 0.6 * GAP;
+    let count = Toy::all().count();
+    let columns = (((screen.width() - 2.0 * EDGE) / step) as usize).clamp(1, count);
+    let rows = count.div_ceil(columns);
+    // Rows of about the same length.
+    let columns = count.div_ceil(rows);
+    (0..count).map(move |index| {
+        let (row, column) = (index / columns, index % columns);
+        let in_row = columns.min(count - row * columns);
+        let left = screen.center().x - 0.5 * step * in_row as f32;
+        let up = scale * EDGE + step * (rows - row) as f32;
+        let at = pos2(left + step * column as f32, screen.bottom() - up);
+        Rect::from_min_size(at, Vec2::splat(side))
+    })
+}
+
+fn press(game: &mut Game, toy: Toy) {
+    game.blip(Menu::Confirm);
+    match toy {
+        Toy::Stuff(stuff) => game.bout.toys.stuff = stuff,
+        Toy::Form(form) => {
+            let at = place_to_add(game);
+            let stuff = game.bout.toys.stuff;
+            game.change_playground(Change::add(form, stuff, at));
+        }
+        Toy::Tool(tool) => {
+            game.bout.toys.tool = tool;
+            game.change_playground(Change::Tool(tool));
+        }
+        Toy::Sliders => game.bout.toys.has_sliders ^= true,
+        Toy::Clear => game.change_playground(Change::Clear),
+    }
+}
+
+/// Returns where a body is added [m]: below the upper end of the room, on the side away from the hand.
+fn place_to_add(game: &Game) -> Vec3 {
+    let round = game.bout.round();
+    let [low, high] = round.level().arena();
+    let middle = 0.5 * (low + high);
+    let side = if round.hands()[0].position.x < middle.x {
+        0.25
+    } else {
+        -0.25
+    };
+    // Neighbours lie a little apart, so that towers do not stand still.
+    let apart = 0.03 * (round.ticks() % 7) as f32;
+    let x = middle.x + side * (high.x - low.x) + apart;
+    Vec3::new(x, high.y - BELOW_TOP, middle.z)
+}
+
+/// Shows the sliders. Returns whether the mouse is over them.
+fn sliders(game: &mut Game, ui: &mut Ui, scale: f32) -> bool {
+    let (theme, said, screen) = (game.theme(), game.words(), ui.max_rect());
+    let width = CARD.min(screen.width() - 2.0 * EDGE);
+    let low = screen.bottom() - height(game, ui) - scale * GAP;
+    let size = vec2(width, CARD_HIGH);
+    let place = Rect::from_min_size(pos2(screen.center().x - 0.5 * width, low - size.y), size);
+    let mut toys = game.bout.toys;
+    let shown = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+        card(ui, &theme, |ui| {
+            ui.set_width(ui.available_width());
+            let mut show = |name: &str, value: &mut f32, range: [f32; 3], digits: usize| {
+                slider_with(ui, &theme, name, value, range, |value| {
+                    format!("{value:.digits$}")
+                });
+            };
+            show(said.gravity, &mut toys.gravity, [0.0, 20.0, 0.5], 1);
+            show(said.air, &mut toys.air, [0.0, 5.0, 0.1], 1);
+            show(said.hand_size, &mut toys.hand, [3.0, 30.0, 1.0], 0);
+        });
+        ui.min_rect()
+    });
+    game.controls.covers.push(shown.inner);
+    let before = std::mem::replace(&mut game.bout.toys, toys);
+    let unit = |value: f32, step: f32| (value / step).round() as u8;
+    let changes = [
+        (
+            before.gravity != toys.gravity,
+            Change::Gravity(unit(toys.gravity, 0.5)),
+        ),
+        (before.air != toys.air, Change::Air(unit(toys.air, 0.1))),
+        (
+            before.hand != toys.hand,
+            Change::HandSize(unit(toys.hand, 1.0)),
+        ),
+    ];
+    for (_, change) in changes.into_iter().filter(|(is_changed, _)| *is_changed) {
+        game.change_playground(change);
+    }
+    ui.rect_contains_pointer(shown.inner)
+}
+
+/// Draws a button.
+fn draw(game: &Game, painter: &Painter, toy: Toy, rect: Rect, is_hovered: bool) {
+    let theme = game.theme();
+    let is_chosen = toy.is_chosen(game);
+    let (middle, radius) = (rect.center(), 0.5 * rect.width());
+    let fill = if is_hovered || is_chosen {
+        theme.card
+    } else {
+        pale(&theme)
+    };
+    painter.circle_filled(middle, radius, fill);
+    if is_chosen {
+        painter.circle_stroke(middle, radius - 1.5, Stroke::new(3.0, theme.accent));
+    }
+    let scale = rect.width() / HIGH;
+    match toy {
+        Toy::Stuff(stuff) => {
+            painter.circle_filled(middle, 12.0 * scale, colour(stuff));
+            painter.circle_stroke(middle, 12.0 * scale, Stroke::new(1.5, theme.ink));
+        }
+        Toy::Form(form) => draw_form(painter, &theme, form, middle, scale, game.bout.toys.stuff),
+        Toy::Tool(tool) => draw_tool_icon(painter, tool, middle, scale, theme.ink),
+        Toy::Sliders => icons::sliders(painter, middle, scale, theme.ink),
+        Toy::Clear => icons::broom(painter, middle, scale, theme.ink),
+    }
+}
+
+fn colour(stuff: Stuff) -> Color32 {
+    let [red, green, blue] = stuff.colour();
+    Color32::from_rgb(red, green, blue)
+}
+
+fn draw_form(painter: &Painter, theme: &Theme, form: Form, at: Pos2, scale: f32, stuff: Stuff) {
+    let (fill, line) = (colour(stuff), Stroke::new(1.5, theme.ink));
+    let outline = |radius: &dyn Fn(f32) -> Vec2| {
+        let points = (0..48).map(|k| at + scale * radius(TAU * k as f32 / 48.0));
+        points.collect::<Vec<Pos2>>()
+    };
+    match form {
+        Form::Box => {
+            let square = Rect::from_center_size(at, Vec2::splat(20.0 * scale));
+            painter.rect(square, 2.0, fill, line, egui::StrokeKind::Inside);
+        }
+        Form::Ring => {
+            painter.circle_stroke(at, 9.0 * scale, Stroke::new(7.0 * scale, theme.ink));
+            painter.circle_stroke(at, 9.0 * scale, Stroke::new(5.0 * scale, fill));
+        }
+        Form::Heart => {
+            let heart = |angle: f32| {
+                let (sin, cos) = angle.sin_cos();
+                let up = 13.0 * cos
+                    - 5.0 * (2.0 * angle).cos()
+                    - 2.0 * (3.0 * angle).cos()
+                    - (4.0 * angle).cos();
+                0.72 * vec2(16.0 * sin.powi(3), -up)
+            };
+            painter.add(Shape::Path(egui::epaint::PathShape {
+                points: outline(&heart),
+                closed: true,
+                fill,
+                stroke: line.into(),
+            }));
+        }
+        Form::Flower => {
+            for petal in 0..5 {
+                let way = Vec2::angled(TAU * (petal as f32 / 5.0 - 0.25));
+                painter.circle(at + 7.0 * scale * way, 5.5 * scale, fill, line);
+            }
+            painter.circle_filled(at, 7.0 * scale, fill);
+        }
+        Form::Ball | Form::Empty => {
+            painter.circle(at, 11.0 * scale, fill, line);
+        }
+    }
+}
+
+fn draw_tool_icon(painter: &Painter, tool: Tool, at: Pos2, scale: f32, ink: Color32) {
+    match tool {
+        Tool::Push => icons::hand(painter, at, scale, ink),
+        Tool::Grab => icons::grab(painter, at, scale, ink),
+        Tool::Knife => icons::knife(painter, at, scale, ink),
+        Tool::Pin => icons::pin(painter, at, scale, ink),
+    }
+}
+
+/// Draws the tool at the hand.
+fn draw_tool(game: &Game, painter: &Painter) {
+    let tool = game.bout.toys.tool;
+    let Some(view) = game.bout.view.filter(|_| tool != Tool::Push) else {
+        return;
+    };
+    let hand = &game.bout.round().hands()[0];
+    let at = view.to_screen(hand.position);
+    let radius = view.scale_at(hand.position) * hand.radius;
+    let scale = (radius / 12.0).max(0.8);
+    draw_tool_icon(painter, tool, at, scale, Color32::WHITE);
+}

@@ -1,0 +1,92 @@
+//! Tests of the playground in the window.
+
+use crate::window::*;
+use egui::{pos2, vec2};
+use egui_kittest::kittest::Queryable;
+use tamaire::game::Game;
+use tamaire::platform::Files;
+use tamaire_play::AnyRound;
+use tamaire_play::playground::{Change, Tool};
+
+fn bodies(game: &Game) -> usize {
+    match game.bout.round() {
+        AnyRound::Plane(round) => round.world().soft_bodies().count(),
+        AnyRound::Space(round) => round.world().soft_bodies().count(),
+    }
+}
+
+#[test]
+fn shapes_are_added_and_cleared_by_buttons() {
+    for level in ["sandbox", "sandbox-3d"] {
+        let mut window = open(Files::nowhere(), vec2(1000.0, 640.0), 1.0);
+        start(&mut window, level);
+        let before = bodies(game(&mut window));
+        for name in ["Clay", "Add a ring", "Stone", "Add a heart"] {
+            window.get_by_label(name).click();
+            frames(&mut window, 4);
+        }
+        assert_eq!(bodies(game(&mut window)), before + 2, "{level}");
+        window.get_by_label("Clear the room").click();
+        frames(&mut window, 4);
+        assert_eq!(bodies(game(&mut window)), 0, "{level}");
+    }
+}
+
+#[test]
+fn pressing_uses_the_tool_but_not_on_a_button() {
+    let mut window = open(Files::nowhere(), vec2(1000.0, 640.0), 1.0);
+    start(&mut window, "sandbox");
+    window.get_by_label("Knife: press and hold").click();
+    frames(&mut window, 3);
+    assert_eq!(game(&mut window).bout.toys.tool, Tool::Knife);
+    let presses = |window: &mut Window| {
+        let changes = game(window).bout.round().changes().iter();
+        changes
+            .filter(|change| matches!(change.change, Change::Press(_)))
+            .count()
+    };
+    assert_eq!(presses(&mut window), 0, "the press on the button");
+    window.hover_at(pos2(500.0, 200.0));
+    window.drag_at(pos2(500.0, 200.0));
+    frames(&mut window, 3);
+    assert_eq!(presses(&mut window), 1);
+    window.drop_at(pos2(500.0, 200.0));
+    frames(&mut window, 3);
+    assert_eq!(presses(&mut window), 2);
+}
+
+#[test]
+fn a_finger_on_a_tool_does_not_move_the_hand() {
+    let mut window = open(Files::nowhere(), vec2(390.0, 844.0), 1.0);
+    start(&mut window, "sandbox");
+    let place = window.get_by_label("Add a ball").rect().center();
+    let hand = game(&mut window).bout.round().hands()[0].target;
+    touch(&mut window, 0, egui::TouchPhase::Start, place);
+    frames(&mut window, 3);
+    touch(&mut window, 0, egui::TouchPhase::End, place);
+    frames(&mut window, 6);
+    let now = game(&mut window).bout.round().hands()[0].target;
+    assert!((now - hand).length() < 0.01, "{now}");
+}
+
+#[test]
+fn sliders_change_the_world() {
+    let mut window = open(Files::nowhere(), vec2(1000.0, 640.0), 1.0);
+    start(&mut window, "sandbox");
+    window.get_by_label("Gravity, air, hand").click();
+    frames(&mut window, 3);
+    let slider = window.get_by_label("Gravity [m/s²]").rect();
+    let at = slider.right_center() - vec2(4.0, 0.0);
+    window.drag_at(at);
+    frames(&mut window, 2);
+    window.drop_at(at);
+    frames(&mut window, 3);
+    let AnyRound::Plane(round) = game(&mut window).bout.round() else {
+        panic!("the level is in 2D");
+    };
+    assert!(
+        round.world().config().gravity.y < -10.0,
+        "{}",
+        round.world().config().gravity
+    );
+}

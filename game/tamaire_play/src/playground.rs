@@ -1,0 +1,364 @@
+//! Playgrounds: levels without a basket, in which players add bodies, change the tool of the hand, gravity and air.
+//!
+//! A [`Change`] is made between two ticks. It is part of the recording, so a replay and time that runs back make it again.
+
+use crate::Round;
+use fuwafuwa::{
+    Blade, Dim, DimVector, Joint, JointAnchor, JointHandle, Layers, Shape, SoftBody,
+    SoftBodyHandle, Vec3, World,
+};
+use fuwafuwa_scenes::Scene;
+use fuwafuwa_scenes::scene::Form;
+use serde::{Deserialize, Serialize};
+
+/// Maximum number of nodes of all bodies together. Then no more bodies can be added.
+pub const MOST_NODES: usize = 9000;
+/// Maximum number of changes in a recording.
+pub(crate) const MOST_CHANGES: usize = 20_000;
+
+/// Width of an added body [m].
+const WIDTH: f32 = 0.5;
+/// Number of voxels across an added body, in 2D and 3D.
+const VOXELS: [usize; 2] = [32, 10];
+/// Distance from the surface of the hand within which it grabs and pins [m].
+const REACH: f32 = 0.04;
+/// Half the length of the knife's edge, which stands upright in 3D [m].
+const EDGE: f32 = 0.35;
+/// Units of a position per metre, as in [`InputFrame`](crate::InputFrame).
+const UNITS: f32 = crate::input::UNITS_PER_METRE;
+
+/// Material of an added body.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stuff {
+    /// Soft and tough.
+    Jelly,
+    /// Stiff, and does not tear.
+    Rubber,
+    /// Stiff and brittle.
+    Biscuit,
+    /// Keeps the shape into which it is pressed.
+    Clay,
+    /// Very stiff and heavy, and does not tear.
+    Stone,
+}
+
+impl Stuff {
+    /// All materials. Their numbers in added bodies follow this order, from 1.
+    pub const ALL: [Self; 5] = [
+        Self::Jelly,
+        Self::Rubber,
+        Self::Biscuit,
+        Self::Clay,
+        Self::Stone,
+    ];
+
+    /// Returns the colour: red, green and blue, 0 to 255 (sRGB).
+    pub fn colour(self) -> [u8; 3] {
+        match self {
+            Self::Jelly => [244, 130, 116],
+            Self::Rubber => [240, 180, 60],
+            Self::Biscuit => [206, 150, 92],
+            Self::Clay => [116, 176, 140],
+            Self::Stone => [140, 150, 168],
+        }
+    }
+
+    /// Returns the table of the material in a scene file.
+    fn text(self) -> &'static str {
+        match self {
+            Self::Jelly => "young = 2500.0\nstrength = 1200.0\ntoughness = 150.0",
+            Self::Rubber => "young = 9000.0\nunbreakable = true",
+            Self::Biscuit => "young = 12000.0\nstrength = 1500.0\ntoughness = 120.0",
+            Self::Clay => {
+                "young = 6000.0\nstrength = 4000.0\ntoughness = 600.0\nyield_strain = 0.05\nplastic_limit = 2.5"
+            }
+            Self::Stone => "young = 20000.0\nunbreakable = true\ndensity = 300.0",
+        }
+    }
+}
+
+/// What the first player's hand does.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tool {
+    /// Pushes, as in all other levels.
+    #[default]
+    Push,
+    /// Holds what it touches, while it is pressed.
+    Grab,
+    /// Cuts what it passes, while it is pressed.
+    Knife,
+    /// Pins what it touches when it is pressed: two bodies to each other, or one to its place.
+    Pin,
+}
+
+/// A change of a playground.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Change {
+    /// Adds a body.
+    Add {
+        /// Shape.
+        form: Form,
+        /// Material.
+        stuff: Stuff,
+        /// Middle of the body [1/8192 m].
+        at: [i16; 3],
+    },
+    /// Removes all bodies and pins.
+    Clear,
+    /// Gravity in halves of 1 m/s², up to 40.
+    Gravity(u8),
+    /// Drag of the air in tenths of 1/s, up to 50.
+    Air(u8),
+    /// Radius of the first player's hand [cm], 3 to 30.
+    HandSize(u8),
+    /// Tool of the first player's hand.
+    Tool(Tool),
+    /// Whether the tool is pressed.
+    Press(bool),
+}
+
+impl Change {
+    /// Returns the change that adds a body with its middle at a position [m].
+    pub fn add(form: Form, stuff: Stuff, at: Vec3) -> Self {
+        let unit = |k: f32| (k * UNITS).round() as i16;
+        let at = at.to_array().map(unit);
+        Self::Add { form, stuff, at }
+    }
+}
+
+/// A change and the number of ticks before it.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TimedChange {
+    /// Number of ticks from the start of the round to the change.
+    pub tick: u32,
+    /// The change.
+    pub change: Change,
+}
+
+/// Reason why a change is refused. It then changes nothing.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ChangeError {
+    /// The level has a basket.
+    #[error("expected a level without a basket")]
+    NoPlayground,
+    /// There are too many bodies.
+    #[error("expected at most {MOST_NODES} nodes in all bodies")]
+    Full,
+    /// The change cannot be made.
+    #[error("{0}")]
+    Invalid(String),
+}
+
+/// State of the first player's tool.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ToolState {
+    tool: Tool,
+    is_pressed: bool,
+    /// Pins that hold what is grabbed.
+    grabbed: Vec<JointHandle>,
+    /// Position of the hand after the last tick [m].
+    last: Vec3,
+}
+
+impl<D: Dim> Round<D> {
+    /// Makes a change of a playground at the beginning of the next tick, and records it.
+    ///
+    /// # Errors
+    /// [`ChangeError`] if the level has a basket, or if there are too many bodies.
+    pub fn change(&mut self, change: Change) -> Result<(), ChangeError> {
+        if !self.baskets().is_empty() {
+            return Err(ChangeError::NoPlayground);
+        }
+        if let Change::Add { form, stuff, at } = change {
+            let nodes = |body: &SoftBody<D>| body.mesh().nodes().count();
+            let more = nodes(&body_of::<D>(form, stuff, at)?);
+            let all: usize = self
+                .world()
+                .soft_bodies()
+                .map(|(_, body)| nodes(body))
+                .sum();
+            // Bodies of the same size may be waiting to be added.
+            if all + more * (1 + self.waiting_bodies()) > MOST_NODES {
+                return Err(ChangeError::Full);
+            }
+        }
+        self.note_change(change);
+        Ok(())
+    }
+
+    /// Makes a change now.
+    pub(crate) fn make(&mut self, change: Change) -> Result<(), ChangeError> {
+        let hand = self.first_hand();
+        let config = *self.world().config();
+        match change {
+            Change::Add { form, stuff, at } => {
+                let body = body_of::<D>(form, stuff, at)?;
+                self.world_mut().add_soft_body(body).map_err(invalid)?;
+            }
+            Change::Clear => {
+                self.let_go();
+                let bodies: Vec<_> = self.world().soft_bodies().map(|(body, _)| body).collect();
+                for body in bodies {
+                    self.world_mut().remove(body).map_err(invalid)?;
+                }
+            }
+            Change::Gravity(halves) => {
+                let strength = 0.5 * f32::from(halves.min(40));
+                let gravity = -strength * D::Vector::Y.to_vec3();
+                let gravity = D::Vector::from_vec3(gravity);
+                let config = fuwafuwa::WorldConfig { gravity, ..config };
+                self.world_mut().set_config(config).map_err(invalid)?;
+            }
+            Change::Air(tenths) => {
+                let drag = 0.1 * f32::from(tenths.min(50));
+                let config = fuwafuwa::WorldConfig { drag, ..config };
+                self.world_mut().set_config(config).map_err(invalid)?;
+            }
+            Change::HandSize(centimetres) => {
+                self.let_go();
+                let radius = 0.01 * f32::from(centimetres.clamp(3, 30));
+                self.resize_hand(radius).map_err(invalid)?;
+            }
+            Change::Tool(tool) => {
+                self.let_go();
+                let own = self.layers_of_hand();
+                let layers = match tool {
+                    Tool::Push => own,
+                    _ => Layers { filters: 0, ..own },
+                };
+                self.world_mut().set_layers(hand, layers).map_err(invalid)?;
+                *self.tool_mut() = ToolState {
+                    tool,
+                    ..ToolState::default()
+                };
+            }
+            Change::Press(is_pressed) => self.press(is_pressed),
+        }
+        Ok(())
+    }
+
+    /// Presses the tool, or lets it go.
+    fn press(&mut self, is_pressed: bool) {
+        self.let_go();
+        let hand = self.first_hand();
+        let at = self.position_of_hand();
+        self.tool_mut().is_pressed = is_pressed;
+        self.tool_mut().last = at.to_vec3();
+        if !is_pressed {
+            return;
+        }
+        let radius = self.radius_of_hand() + REACH;
+        let touched = bodies_near(self.world(), at, radius);
+        let anchor = |body: SoftBodyHandle| JointAnchor::on(body, at).within(radius);
+        match self.tool_mut().tool {
+            Tool::Grab => {
+                for body in touched {
+                    let pin = Joint::pin(JointAnchor::on(hand, at), anchor(body));
+                    let pin = self.world_mut().add_joint(pin).ok();
+                    self.tool_mut().grabbed.extend(pin);
+                }
+            }
+            Tool::Pin => {
+                let pin = match touched.as_slice() {
+                    [] => return,
+                    &[body] => Joint::pin(JointAnchor::Point(at), anchor(body)),
+                    &[one, other, ..] => Joint::pin(anchor(one), anchor(other)),
+                };
+                // A pin that cannot be added, for example in crumbs, is left out.
+                let _pin = self.world_mut().add_joint(pin);
+            }
+            Tool::Push | Tool::Knife => {}
+        }
+    }
+
+    /// Lets go what is grabbed.
+    fn let_go(&mut self) {
+        self.tool_mut().is_pressed = false;
+        for pin in std::mem::take(&mut self.tool_mut().grabbed) {
+            // A pin that broke is gone.
+            let _pin = self.world_mut().remove(pin);
+        }
+    }
+
+    /// Cuts what the knife has passed in the last tick.
+    pub(crate) fn use_tool(&mut self) {
+        let ToolState {
+            tool: Tool::Knife,
+            is_pressed: true,
+            last,
+            ..
+        } = *self.tool_mut()
+        else {
+            return;
+        };
+        let now = self.position_of_hand().to_vec3();
+        self.tool_mut().last = now;
+        let ends = [-EDGE, EDGE].map(|height| D::Vector::from_vec3(last + height * Vec3::Y));
+        let edge = match D::N {
+            2 => [D::Vector::from_vec3(last); 2],
+            _ => ends,
+        };
+        let blade = Blade::swept(edge, D::Vector::from_vec3(now - last));
+        let bodies: Vec<_> = self.world().soft_bodies().map(|(body, _)| body).collect();
+        for body in bodies {
+            // A body of a coarse grading cannot be cut.
+            let _cut = self.world_mut().cut(body, &blade);
+        }
+    }
+}
+
+fn invalid(error: fuwafuwa::Error) -> ChangeError {
+    ChangeError::Invalid(error.to_string())
+}
+
+/// Returns the bodies with a node within a distance of a point, the nearest first.
+fn bodies_near<D: Dim>(world: &World<D>, at: D::Vector, reach: f32) -> Vec<SoftBodyHandle> {
+    let region = Shape::Ball {
+        centre: at,
+        radius: reach,
+    };
+    let distance = |body: &SoftBody<D>| {
+        let nodes = body.nodes_in(&region);
+        let away = nodes.map(|node| (body.positions()[node].xyz() - at.to_vec3()).length());
+        away.fold(f32::INFINITY, f32::min)
+    };
+    let bodies = world
+        .soft_bodies()
+        .map(|(handle, body)| (distance(body), handle));
+    let mut near: Vec<_> = bodies.filter(|(away, _)| away.is_finite()).collect();
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    near.into_iter().map(|(_, body)| body).collect()
+}
+
+/// Builds a body to be added.
+fn body_of<D: Dim>(form: Form, stuff: Stuff, at: [i16; 3]) -> Result<SoftBody<D>, ChangeError> {
+    let mut at = at.map(|k| f32::from(k) / UNITS - 0.5 * WIDTH);
+    if D::N == 2 {
+        at[2] = 0.0;
+    }
+    let materials = Stuff::ALL
+        .map(|stuff| format!("[[material]]\n{}\n", stuff.text()))
+        .concat();
+    let form =
+        toml::Value::try_from(form).map_err(|error| ChangeError::Invalid(error.to_string()))?;
+    let number = 1 + Stuff::ALL
+        .iter()
+        .position(|known| *known == stuff)
+        .unwrap_or(0);
+    let text = format!(
+        "dim = {}\n{materials}[[body]]\nshape = {form}\nn = {}\nwidth = {WIDTH}\nmaterial = {number}\nat = {at:?}\n",
+        D::N,
+        VOXELS[D::N - 2],
+    );
+    let wrong = |error: fuwafuwa_scenes::scene::SceneError| ChangeError::Invalid(error.to_string());
+    let scene = Scene::read("body", &text, &[]).map_err(wrong)?;
+    let mut world = scene.build::<D>().map_err(wrong)?;
+    let body = world
+        .nth_soft_body(0)
+        .ok_or_else(|| ChangeError::Invalid("no body".into()))?;
+    world.remove(body).map_err(invalid)
+}

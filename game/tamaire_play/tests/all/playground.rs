@@ -1,0 +1,289 @@
+//! Playgrounds: what players add and change happens, comes back when time runs back, and is part of replays and links.
+
+use fuwafuwa::Vec3;
+use fuwafuwa_scenes::scene::Form;
+use std::sync::Arc;
+use tamaire_play::playground::{Change, ChangeError, MOST_NODES, Stuff, Tool};
+use tamaire_play::{AnyRound, InputFrame, Level, Link, Playback, Replay, Rewind};
+
+const FORMS: [Form; 5] = [Form::Ball, Form::Box, Form::Ring, Form::Heart, Form::Flower];
+
+fn begin(id: &str) -> AnyRound {
+    AnyRound::new(Arc::new(Level::open(id).unwrap()))
+}
+
+fn bodies(round: &AnyRound) -> usize {
+    match round {
+        AnyRound::Plane(round) => round.world().soft_bodies().count(),
+        AnyRound::Space(round) => round.world().soft_bodies().count(),
+    }
+}
+
+fn wait(round: &mut AnyRound, ticks: usize) {
+    for _ in 0..ticks {
+        round.step(InputFrame::default());
+    }
+}
+
+/// Moves the hand to a position within some ticks.
+fn go(round: &mut AnyRound, to: Vec3, ticks: usize) {
+    for _ in 0..ticks {
+        round.step(InputFrame::towards(to));
+    }
+}
+
+/// Verifies that the replay of a round, and its link, play to the same end.
+fn verify(round: &AnyRound) {
+    let text = round.replay().text();
+    let Link::Round(sent) = Link::read(&round.replay().link().unwrap()).unwrap() else {
+        panic!("a round was sent");
+    };
+    for replay in [Replay::read(&text).unwrap(), *sent] {
+        let mut playback = Playback::new(Arc::new(replay)).unwrap();
+        while !playback.is_over() {
+            playback.step().unwrap();
+        }
+        assert_eq!(playback.round().hash(), round.hash());
+    }
+}
+
+#[test]
+fn every_shape_of_every_material_can_be_added_until_the_room_is_full() {
+    for id in ["sandbox", "sandbox-3d"] {
+        let mut round = begin(id);
+        round.change(Change::Clear).unwrap();
+        wait(&mut round, 1);
+        assert_eq!(bodies(&round), 0);
+        for form in FORMS {
+            for stuff in Stuff::ALL {
+                round.change(Change::Clear).unwrap();
+                round.change(Change::add(form, stuff, Vec3::ZERO)).unwrap();
+                wait(&mut round, 2);
+                assert_eq!(bodies(&round), 1, "{id}, {form:?}, {stuff:?}");
+            }
+        }
+        let add =
+            |round: &mut AnyRound| round.change(Change::add(Form::Ball, Stuff::Stone, Vec3::ZERO));
+        let mut count = 0;
+        let refused = loop {
+            match add(&mut round) {
+                Ok(()) => count += 1,
+                Err(refused) => break refused,
+            }
+        };
+        assert_eq!(refused, ChangeError::Full);
+        assert!(count >= 4, "{count}");
+        wait(&mut round, 1);
+        assert_eq!(bodies(&round), 1 + count);
+        let nodes = match &round {
+            AnyRound::Plane(round) => round
+                .world()
+                .soft_bodies()
+                .map(|(_, body)| body.mesh().nodes().count())
+                .sum::<usize>(),
+            AnyRound::Space(round) => round
+                .world()
+                .soft_bodies()
+                .map(|(_, body)| body.mesh().nodes().count())
+                .sum::<usize>(),
+        };
+        assert!(nodes <= MOST_NODES);
+    }
+    let mut classic = begin("classic");
+    assert_eq!(
+        classic.change(Change::Clear),
+        Err(ChangeError::NoPlayground)
+    );
+}
+
+/// Returns a playground with a single body in the middle and without gravity.
+fn with_one_body(id: &str, stuff: Stuff) -> AnyRound {
+    let mut round = begin(id);
+    for change in [
+        Change::Clear,
+        Change::Gravity(0),
+        Change::add(Form::Ball, stuff, middle(&round)),
+    ] {
+        round.change(change).unwrap();
+    }
+    wait(&mut round, 1);
+    round
+}
+
+fn middle(round: &AnyRound) -> Vec3 {
+    let [low, high] = round.level().arena();
+    0.5 * (low + high)
+}
+
+fn centre(round: &AnyRound) -> Vec3 {
+    let views = match round {
+        AnyRound::Plane(round) => round
+            .world()
+            .soft_bodies()
+            .flat_map(|(_, body)| body.piece_views())
+            .collect::<Vec<_>>(),
+        AnyRound::Space(round) => round
+            .world()
+            .soft_bodies()
+            .flat_map(|(_, body)| body.piece_views())
+            .collect(),
+    };
+    let largest = views.into_iter().max_by(|a, b| a.mass.total_cmp(&b.mass));
+    largest.unwrap().centre
+}
+
+#[test]
+fn grab_carries_a_body_and_lets_it_go() {
+    for id in ["sandbox", "sandbox-3d"] {
+        let mut round = with_one_body(id, Stuff::Rubber);
+        let from = centre(&round);
+        round.change(Change::Tool(Tool::Grab)).unwrap();
+        go(&mut round, from, 90);
+        assert!(
+            (centre(&round) - from).length() < 0.02,
+            "{id}: the hand passes through"
+        );
+        round.change(Change::Press(true)).unwrap();
+        go(&mut round, from + 0.5 * Vec3::X, 120);
+        let carried = centre(&round);
+        assert!(
+            (carried - from - 0.5 * Vec3::X).length() < 0.1,
+            "{id}: {carried}"
+        );
+        round.change(Change::Press(false)).unwrap();
+        go(&mut round, from, 120);
+        assert!((centre(&round) - carried).length() < 0.15, "{id}");
+        verify(&round);
+    }
+}
+
+#[test]
+fn knife_cuts_a_body_in_two_while_it_is_pressed() {
+    for id in ["sandbox", "sandbox-3d"] {
+        let mut round = with_one_body(id, Stuff::Rubber);
+        let at = centre(&round);
+        round.change(Change::Tool(Tool::Knife)).unwrap();
+        let [left, right] = [at - 0.45 * Vec3::X, at + 0.45 * Vec3::X];
+        go(&mut round, left, 120);
+        go(&mut round, right, 60);
+        assert_eq!(round.progress().pieces, 1, "{id}: not pressed");
+        round.change(Change::Press(true)).unwrap();
+        go(&mut round, left, 60);
+        assert_eq!(bodies(&round), 1);
+        assert!(round.progress().pieces >= 2, "{id}");
+        verify(&round);
+    }
+}
+
+#[test]
+fn pin_holds_a_body_up_against_gravity() {
+    for id in ["sandbox", "sandbox-3d"] {
+        let mut round = with_one_body(id, Stuff::Rubber);
+        let at = centre(&round);
+        round.change(Change::Tool(Tool::Pin)).unwrap();
+        go(&mut round, at, 120);
+        round.change(Change::Press(true)).unwrap();
+        round.change(Change::Gravity(20)).unwrap();
+        wait(&mut round, 120);
+        assert!(
+            (centre(&round) - at).length() < 0.1,
+            "{id}: {}",
+            centre(&round)
+        );
+        // Without the pin it falls.
+        let mut falls = with_one_body(id, Stuff::Rubber);
+        falls.change(Change::Gravity(20)).unwrap();
+        wait(&mut falls, 120);
+        assert!(centre(&falls).y < at.y - 0.2, "{id}");
+        verify(&round);
+    }
+}
+
+#[test]
+fn hand_grows_and_air_brakes() {
+    let mut round = begin("sandbox");
+    round.change(Change::HandSize(25)).unwrap();
+    wait(&mut round, 1);
+    assert!((round.hands()[0].radius - 0.25).abs() < 1e-6);
+    let speed = |air: u8| {
+        let mut round = with_one_body("sandbox", Stuff::Rubber);
+        round.change(Change::Air(air)).unwrap();
+        round.change(Change::Gravity(4)).unwrap();
+        let from = centre(&round).y;
+        wait(&mut round, 30);
+        from - centre(&round).y
+    };
+    assert!(speed(50) < 0.7 * speed(0), "{} {}", speed(50), speed(0));
+}
+
+/// Makes random changes and movements, and returns the hash after each tick.
+fn play_at_random(
+    round: &mut AnyRound,
+    rewind: &mut Rewind,
+    random: &mut fastrand::Rng,
+    ticks: usize,
+    hashes: &mut Vec<u64>,
+) {
+    for _ in 0..ticks {
+        if random.u8(..) < 12 {
+            let at = Vec3::new(random.f32() - 0.5, 0.8 * random.f32(), 0.0);
+            let change = match random.u8(0..7) {
+                0 => Change::add(
+                    FORMS[random.usize(0..5)],
+                    Stuff::ALL[random.usize(0..5)],
+                    at,
+                ),
+                1 => Change::Gravity(random.u8(..)),
+                2 => Change::Air(random.u8(..)),
+                3 => Change::HandSize(random.u8(..)),
+                4 => Change::Tool(
+                    [Tool::Push, Tool::Grab, Tool::Knife, Tool::Pin][random.usize(0..4)],
+                ),
+                5 if random.u8(..) < 60 => Change::Clear,
+                _ => Change::Press(random.bool()),
+            };
+            // A full room refuses a body.
+            let _made = round.change(change);
+        }
+        let to = Vec3::new(
+            2.0 * random.f32() - 1.0,
+            random.f32() - 0.5,
+            random.f32() - 0.5,
+        );
+        round.step(InputFrame::towards(to));
+        rewind.note(round);
+        hashes.truncate(round.ticks() as usize);
+        hashes.push(round.hash());
+    }
+}
+
+#[test]
+fn changes_come_back_when_time_runs_back_and_are_in_the_replay() {
+    for (id, seed, rounds) in [("sandbox", 1, 4), ("sandbox", 2, 4), ("sandbox-3d", 3, 2)] {
+        let mut random = fastrand::Rng::with_seed(seed);
+        let mut round = begin(id);
+        let mut rewind = Rewind::new(&round);
+        let mut hashes = vec![round.hash()];
+        for _ in 0..rounds {
+            play_at_random(&mut round, &mut rewind, &mut random, 80, &mut hashes);
+            let to = round.ticks().saturating_sub(random.u64(5..50));
+            rewind.begin(&round);
+            round.count_rewind();
+            while round.ticks() > to && rewind.left(&round) > 0 {
+                while !rewind.is_ready() {
+                    rewind.prepare(&round);
+                }
+                rewind.back(&mut round);
+                assert_eq!(
+                    round.hash(),
+                    hashes[round.ticks() as usize],
+                    "{id}, seed {seed}"
+                );
+            }
+            rewind.end();
+        }
+        // A change after the last tick is not part of the replay.
+        round.change(Change::Clear).unwrap();
+        verify(&round);
+    }
+}
