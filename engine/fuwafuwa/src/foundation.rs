@@ -1,6 +1,7 @@
 //! Dimensions, typed ids, containers, state hashing and threads.
 
 pub mod arena;
+pub mod copy_on_write;
 pub mod dim;
 pub mod disjoint_sets;
 pub mod hash;

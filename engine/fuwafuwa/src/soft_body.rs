@@ -132,10 +132,10 @@ impl<D: Dim> SoftBody<D> {
                 materials: materials.to_vec(),
                 stiffness_scale: 1.0,
                 mass_scale: 1.0,
-                grid,
-                connectivity,
-                hierarchy,
-                mesh,
+                grid: grid.into(),
+                connectivity: connectivity.into(),
+                hierarchy: hierarchy.into(),
+                mesh: mesh.into(),
             },
             state: State::new(batches),
             cache: Cache::default(),
@@ -236,6 +236,12 @@ impl<D: Dim> SoftBody<D> {
     /// Connectivity of the voxels.
     pub fn connectivity(&self) -> &Connectivity<D> {
         &self.topology.connectivity
+    }
+
+    /// Returns whether both are copies of one body, and neither was torn, cut or reduced since. Such copies share the
+    /// memory of their topology.
+    pub fn shares_topology_with(&self, other: &Self) -> bool {
+        self.topology.mesh.is_same(&other.topology.mesh)
     }
 
     /// Elements and nodes.

@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn swept_edge_is_a_segment_in_2d_and_a_parallelogram_in_3d() {
-        let (from, by) = (Vec2::new(0.2, -0.3), Vec2::new(0.5, 0.1));
+        let (from, by) = (Vec2::new(0.25, -0.5), Vec2::new(0.5, 0.125));
         let ends = [from - Vec2::Y, from + Vec2::Y];
         let swept = Blade::<Dim2>::swept(ends, by);
         assert_eq!(swept, Blade::segment(from, from + by));

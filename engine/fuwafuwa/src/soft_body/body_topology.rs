@@ -1,5 +1,6 @@
 //! Topology of a body: voxels, connectivity, and the mesh that follows from them.
 
+use crate::foundation::copy_on_write::CopyOnWrite;
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::material::Material;
@@ -18,10 +19,10 @@ use crate::topology::pieces::Pieces;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Topology<D: Dim> {
-    pub grid: VoxelGrid<D>,
-    pub connectivity: Connectivity<D>,
-    pub hierarchy: CellHierarchy<D>,
-    pub mesh: Mesh<D>,
+    pub grid: CopyOnWrite<VoxelGrid<D>>,
+    pub connectivity: CopyOnWrite<Connectivity<D>>,
+    pub hierarchy: CopyOnWrite<CellHierarchy<D>>,
+    pub mesh: CopyOnWrite<Mesh<D>>,
     pub pieces: Pieces,
     /// Materials of the body. Material number n of the grid is at index n − 1.
     pub materials: Vec<Material>,

@@ -101,7 +101,7 @@ impl<D: Dim> Topology<D> {
         ensure(self.connectivity.is_valid(&self.grid), "groups")?;
         let grading = self.hierarchy.grading();
         let cells = CellHierarchy::new(&self.grid, &self.connectivity, grading);
-        ensure(self.hierarchy == cells, "cells")?;
+        ensure(*self.hierarchy == cells, "cells")?;
         let fresh = Mesh::grade(&self.grid, &self.connectivity, &cells)?;
         self.mesh.check_against(&fresh, &self.connectivity)?;
         self.mesh.validate(&self.grid, &self.connectivity)?;

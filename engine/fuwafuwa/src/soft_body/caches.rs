@@ -1,6 +1,7 @@
 //! Data derived from the topology and the state of a body.
 
 use super::body_properties::BodyProperties;
+use crate::foundation::copy_on_write::CopyOnWrite;
 use crate::foundation::dim::Point;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::fracture::breakable_nodes::BreakableNodes;
@@ -26,19 +27,19 @@ pub struct Cache {
     /// Whether `awake` must be recomputed before use.
     pub awake_is_stale: bool,
     /// Mass damping of each node [1/s], by id; empty if all materials in use have the same.
-    pub mass_damping: IndexVec<NodeId, f32>,
+    pub mass_damping: CopyOnWrite<IndexVec<NodeId, f32>>,
     /// Nodes at which a crack can start or continue, with their possible cuts and limits.
-    pub breakable: BreakableNodes,
+    pub breakable: CopyOnWrite<BreakableNodes>,
     /// Mask of the exposed faces of each level-0 element: bit 2 · axis + side (0 = low, 1 = high).
-    pub exposed_faces: IndexVec<ElementId, u8>,
+    pub exposed_faces: CopyOnWrite<IndexVec<ElementId, u8>>,
     /// For each element with exposed faces, mask of the voxels around the element that share a node with the
     /// element; see
     /// [`Connectivity::connected_voxels`](crate::topology::connectivity::Connectivity::connected_voxels).
-    pub connected_voxels: IndexVec<ElementId, u32>,
+    pub connected_voxels: CopyOnWrite<IndexVec<ElementId, u32>>,
     /// Smooth surface of the voxels. It stays the same after cracks.
     pub skin: Arc<Skin>,
     /// Point of the smooth surface of each node, by id.
-    pub skin_points: IndexVec<NodeId, SkinPoint>,
+    pub skin_points: CopyOnWrite<IndexVec<NodeId, SkinPoint>>,
     /// History of recent cracks and removals, which callers read through bookmarks.
     pub history: History,
     /// Rigid motion of each piece at the last damping round, relative to which positions are extrapolated.

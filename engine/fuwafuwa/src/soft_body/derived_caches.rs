@@ -16,9 +16,11 @@ impl<D: Dim> SoftBody<D> {
         state.make_room(topology.mesh.node_capacity());
         cache
             .exposed_faces
+            .edit()
             .resize(topology.mesh.element_capacity(), 0);
         cache
             .connected_voxels
+            .edit()
             .resize(topology.mesh.element_capacity(), 0);
         topology.pieces.make_room(&topology.mesh);
     }
@@ -89,9 +91,9 @@ impl<D: Dim> SoftBody<D> {
                 exposed_faces |=
                     u8::from(!around.is_far_face_closed(octant, axis)) << (2 * axis + 1);
             }
-            self.cache.exposed_faces[owner] = exposed_faces;
+            self.cache.exposed_faces.edit()[owner] = exposed_faces;
             if exposed_faces != 0 {
-                self.cache.connected_voxels[owner] =
+                self.cache.connected_voxels.edit()[owner] =
                     self.topology.connectivity.connected_voxels(voxel);
             }
         }
@@ -106,7 +108,7 @@ impl<D: Dim> SoftBody<D> {
             materials,
             ..
         } = &self.topology;
-        let breakable = &mut self.cache.breakable;
+        let breakable = self.cache.breakable.edit();
         breakable.update(nodes, grid, connectivity, mesh, materials);
     }
 }

@@ -25,6 +25,7 @@ mod saved_states;
 
 pub use crate::math::row::Row;
 
+use crate::foundation::copy_on_write::CopyOnWrite;
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId};
 use crate::foundation::threads::{self, RowChunk, Run};
@@ -63,18 +64,18 @@ pub struct ElementBatches<D: Dim> {
     /// Start in `class_data` of the data of each element class that has batches of its own, by the index of
     /// the class.
     class_data_starts: BTreeMap<u32, u32>,
-    class_data: Vec<f32>,
+    class_data: CopyOnWrite<Vec<f32>>,
     /// Class data of pooled batches; each value is stored once for each lane.
-    pooled_class_data: Vec<Eight>,
+    pooled_class_data: CopyOnWrite<Vec<Eight>>,
     /// Index of the batch, and lane, of each element, by element id; the index is [`VACANT`] if no batch
     /// contains the element.
-    assigned: IndexVec<ElementId, (u32, u8)>,
+    assigned: CopyOnWrite<IndexVec<ElementId, (u32, u8)>>,
     /// For each node, the indices in `forces` at which the forces of its elements begin, in the order of the
     /// octants around the node. Unused entries are 0, where `forces` holds a zero force.
-    slots: IndexVec<NodeId, [u32; 8]>,
+    slots: CopyOnWrite<IndexVec<NodeId, [u32; 8]>>,
     /// Node ids of all batches. The id of node k of the element in lane l is k · LANES + l entries after the
     /// first entry of the batch.
-    nodes: Vec<u32>,
+    nodes: CopyOnWrite<Vec<u32>>,
     /// Forces [N] of the elements on the nodes in `nodes`, in the same order, with D::N components each.
     /// Padding to four components would make up a quarter (3D) or half (2D) of the memory traffic of a
     /// substep.
@@ -120,11 +121,11 @@ impl<D: Dim> ElementBatches<D> {
             open: BTreeMap::new(),
             empty: BTreeMap::new(),
             class_data_starts: BTreeMap::new(),
-            class_data: Vec::new(),
-            pooled_class_data: Vec::new(),
-            assigned: IndexVec::default(),
-            slots: IndexVec::default(),
-            nodes: vec![VACANT; LANES],
+            class_data: CopyOnWrite::default(),
+            pooled_class_data: CopyOnWrite::default(),
+            assigned: CopyOnWrite::default(),
+            slots: CopyOnWrite::default(),
+            nodes: vec![VACANT; LANES].into(),
             forces: vec![0.0; LANES * D::N + PAD],
             #[cfg(feature = "serde")]
             saved: None,

@@ -27,13 +27,15 @@ impl<D: Dim> SoftBody<D> {
         let own = elements.iter().filter_map(|&id| topology.mesh.element(id));
         let voxels = own.flat_map(|element| topology.mesh.voxels(element));
         let voxels: Vec<Point> = voxels.collect();
-        topology.grid.remove_voxels(&voxels);
-        topology.connectivity.remove_voxels(&voxels);
+        topology.grid.edit().remove_voxels(&voxels);
+        topology.connectivity.edit().remove_voxels(&voxels);
         topology
             .hierarchy
+            .edit()
             .remove_voxels(&topology.grid, &topology.connectivity, &voxels);
         let nodes = topology
             .mesh
+            .edit()
             .remove_elements(&topology.connectivity, &elements);
         for &piece in pieces {
             let piece = &mut topology.pieces.list[piece];

@@ -212,13 +212,13 @@ impl<D: Dim> SoftBody<D> {
             return;
         }
         let capacity = self.topology.mesh.node_capacity();
-        self.cache.mass_damping.resize(capacity, 0.0);
+        self.cache.mass_damping.edit().resize(capacity, 0.0);
         for &id in nodes {
             let rate = |material: &Material| {
                 f64::from(material.density) * f64::from(material.damping.mass)
             };
             let damped = self.sum_over_carriers(id, &rate);
-            self.cache.mass_damping[id] = (damped / f64::from(self.state.mass[id])) as f32;
+            self.cache.mass_damping.edit()[id] = (damped / f64::from(self.state.mass[id])) as f32;
         }
     }
 }

@@ -32,26 +32,26 @@ impl<D: Dim> SoftBody<D> {
         let mut changed: Vec<Point> = Vec::new();
         for &(point, side) in at {
             // `at` often has several consecutive entries for one point. `changed` lists such a point once.
-            if self.topology.connectivity.release(point, side) && changed.last() != Some(&point) {
+            let connectivity = self.topology.connectivity.edit();
+            if connectivity.release(point, side) && changed.last() != Some(&point) {
                 changed.push(point);
             }
         }
         if changed.is_empty() {
             return Changes::default();
         }
-        changed.extend(
-            self.topology
-                .connectivity
-                .normalise(self.topology.connectivity.all_around(&changed)),
-        );
+        let around = self.topology.connectivity.all_around(&changed);
+        changed.extend(self.topology.connectivity.edit().normalise(around));
         let near = self.topology.connectivity.all_around(&changed).into_iter();
-        let born =
-            self.topology
-                .hierarchy
-                .refine(&self.topology.grid, &self.topology.connectivity, near);
+        let born = self.topology.hierarchy.edit().refine(
+            &self.topology.grid,
+            &self.topology.connectivity,
+            near,
+        );
         let remodelled = self
             .topology
             .mesh
+            .edit()
             .remodel(
                 &self.topology.grid,
                 &self.topology.connectivity,
@@ -139,7 +139,7 @@ impl<D: Dim> SoftBody<D> {
                 .element(id)
                 .expect("changed elements are alive");
             self.topology.pieces.adopt(id, &element.nodes);
-            self.cache.exposed_faces[id] = 0;
+            self.cache.exposed_faces.edit()[id] = 0;
         }
         let plastic_inverses = self.plastic_inverses_of(remodelled, &new);
         let (batches, pieces) = (&mut self.state.batches, &self.topology.pieces);

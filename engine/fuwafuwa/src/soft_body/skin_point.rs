@@ -134,6 +134,7 @@ impl<D: Dim> SoftBody<D> {
         let capacity = self.topology.mesh.node_capacity();
         self.cache
             .skin_points
+            .edit()
             .resize(capacity, SkinPoint::at(NodeId(0)));
         for &node in nodes {
             let point = self
@@ -141,7 +142,7 @@ impl<D: Dim> SoftBody<D> {
                 .mesh
                 .is_alive(node)
                 .then(|| self.skin_point_of(node));
-            self.cache.skin_points[node] = point.flatten().unwrap_or(SkinPoint::at(node));
+            self.cache.skin_points.edit()[node] = point.flatten().unwrap_or(SkinPoint::at(node));
         }
     }
 

@@ -3,6 +3,7 @@
 
 use super::contact_sphere::{ContactSphere, NEAR, SphereId};
 use crate::foundation::arena::BodySlot;
+use crate::foundation::copy_on_write::CopyOnWrite;
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::foundation::ids::{ElementId, IndexVec, PieceId};
@@ -21,17 +22,17 @@ const DRIFT_TIME: f32 = 0.008;
 pub struct Spheres {
     /// Body and element of each sphere in `list`, stored in files. If `list` is rebuilt, the spheres keep
     /// this order.
-    keys: IndexVec<SphereId, Key>,
+    keys: CopyOnWrite<IndexVec<SphereId, Key>>,
     /// Contact spheres: first those of the initial surface, by body and element, then those that appeared at
     /// the surface later.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub list: IndexVec<SphereId, ContactSphere>,
     /// Sphere of each voxel, by body and voxel index; [`SphereId::NONE`] for a voxel without a sphere.
     #[cfg_attr(feature = "serde", serde(skip))]
-    by_voxel: IndexVec<BodySlot, Vec<SphereId>>,
+    by_voxel: IndexVec<BodySlot, CopyOnWrite<Vec<SphereId>>>,
     /// Pairs of spheres on opposite crack faces: neighbours in a piece that only contacts keep apart.
     #[cfg_attr(feature = "serde", serde(skip))]
-    pub crack_face_pairs: Vec<[SphereId; 2]>,
+    pub crack_face_pairs: CopyOnWrite<Vec<[SphereId; 2]>>,
     /// For each body, bookmark of the last change of the body that `list` includes.
     #[cfg_attr(feature = "serde", serde(skip))]
     followed: IndexVec<BodySlot, Bookmark>,
@@ -88,7 +89,12 @@ impl Spheres {
 
     /// Removes the spheres of a body, so that its slot may be reused.
     pub fn remove_body(&mut self, slot: BodySlot) {
-        for key in self.keys.iter_mut().filter(|(body, _)| *body == slot) {
+        for key in self
+            .keys
+            .edit()
+            .iter_mut()
+            .filter(|(body, _)| *body == slot)
+        {
             *key = (BodySlot::NONE, ElementId(u32::MAX));
         }
         self.followed.clear();
@@ -97,7 +103,12 @@ impl Spheres {
     /// Removes the spheres of `elements` of a body, given in ascending order, so that these ids may be
     /// reused.
     pub fn remove_elements(&mut self, slot: BodySlot, elements: &[ElementId]) {
-        for key in self.keys.iter_mut().filter(|(body, _)| *body == slot) {
+        for key in self
+            .keys
+            .edit()
+            .iter_mut()
+            .filter(|(body, _)| *body == slot)
+        {
             if elements.binary_search(&key.1).is_ok() {
                 *key = (BodySlot::NONE, ElementId(u32::MAX));
             }
@@ -172,7 +183,7 @@ impl Spheres {
         let none = |body: Option<&SoftBody<D>>| {
             let size = body.map_or([0; 3], |body| body.grid().size());
             let voxels = size.map(|extent| extent as usize);
-            vec![SphereId::NONE; voxels.iter().product()]
+            CopyOnWrite::from(vec![SphereId::NONE; voxels.iter().product()])
         };
         self.by_voxel = bodies.slots().map(none).collect();
         let all = bodies.by_slot().flat_map(|(slot, body)| {
@@ -185,13 +196,15 @@ impl Spheres {
             let Some((sphere, body)) = sphere.zip(body) else {
                 continue;
             };
-            let own = &mut self.by_voxel[slot][body.grid().index(sphere.voxel())];
+            let own = &mut self.by_voxel[slot].edit()[body.grid().index(sphere.voxel())];
             if *own == SphereId::NONE {
                 *own = self.list.next_id();
                 self.list.push(sphere);
             }
         }
-        self.keys.extend(self.list.iter().map(ContactSphere::key));
+        self.keys
+            .edit()
+            .extend(self.list.iter().map(ContactSphere::key));
         let centre = |sphere: &ContactSphere| {
             let body = bodies.at(sphere.body);
             sphere.mean::<D>(body.positions())
@@ -199,7 +212,7 @@ impl Spheres {
         self.centres.clear();
         self.centres.extend(self.list.iter().map(centre));
         self.make_room();
-        self.crack_face_pairs.clear();
+        self.crack_face_pairs.edit().clear();
         for own in self.list.ids() {
             let body = bodies.at(self.list[own].body);
             self.find_crack_face_pairs(own, body, |other| other > own);
@@ -230,13 +243,13 @@ impl Spheres {
             };
             // A tear never removes a voxel from the surface. So the sphere of a voxel keeps its number if
             // another element fills the voxel.
-            let own = &mut self.by_voxel[slot][body.grid().index(sphere.voxel())];
+            let own = &mut self.by_voxel[slot].edit()[body.grid().index(sphere.voxel())];
             if *own == SphereId::NONE {
                 *own = self.list.next_id();
                 if !sphere.asleep {
                     self.awake.push(*own);
                 }
-                self.keys.push(sphere.key());
+                self.keys.edit().push(sphere.key());
                 self.list.push(sphere);
                 self.centres.push(sphere.mean::<D>(body.positions()));
             } else {
@@ -251,14 +264,16 @@ impl Spheres {
         let mut is_touched: IndexVec<SphereId, bool> = vec![false; self.list.len()].into();
         touched.iter().for_each(|&own| is_touched[own] = true);
         let is_known = |pair: &[SphereId; 2]| pair.iter().all(|&own| !is_touched[own]);
-        self.crack_face_pairs.retain(is_known);
+        self.crack_face_pairs.edit().retain(is_known);
         if !changes.detached.is_empty() {
             for sphere in self.list.iter_mut().filter(|sphere| sphere.body == slot) {
                 sphere.piece = body.pieces().of_element(sphere.element);
             }
             let list = &self.list;
             let piece = |own: SphereId| (list[own].body, list[own].piece);
-            self.crack_face_pairs.retain(|&[a, b]| piece(a) == piece(b));
+            self.crack_face_pairs
+                .edit()
+                .retain(|&[a, b]| piece(a) == piece(b));
         }
         for own in touched {
             self.find_crack_face_pairs(own, body, |other| !is_touched[other] || other > own);
@@ -287,7 +302,7 @@ impl Spheres {
                     let sphere = &self.list[other];
                     let is_held = other == id || site.is_held_to(&sphere.site());
                     if !is_held && sphere.piece == own.piece {
-                        self.crack_face_pairs.push([id, other]);
+                        self.crack_face_pairs.edit().push([id, other]);
                     }
                 }
             }

@@ -156,13 +156,13 @@ impl<D: Dim> ElementBatches<D> {
                 pending_elements,
             );
         }
-        self.slots.resize(mesh.node_capacity(), [0; 8]);
+        self.slots.edit().resize(mesh.node_capacity(), [0; 8]);
         for node in nodes {
             let mut slots = [0; 8];
             for (place, id) in slots.iter_mut().zip(mesh.carrier_ids(node)) {
                 *place = self.force_index(id, node);
             }
-            self.slots[node] = slots;
+            self.slots.edit()[node] = slots;
         }
     }
 
@@ -193,7 +193,7 @@ impl<D: Dim> ElementBatches<D> {
         if index == VACANT {
             return;
         }
-        self.assigned[id] = (VACANT, 0);
+        self.assigned.edit()[id] = (VACANT, 0);
         let batch = &mut self.batches[index as usize];
         batch.elements[lane as usize] = VACANT;
         batch.vacant |= 1 << lane;
@@ -268,11 +268,11 @@ impl<D: Dim> ElementBatches<D> {
         let first = self.nodes.len() as u32;
         let class_data_start = self.pooled_class_data.len() as u32;
         let rows = self.nodes.len() + count as usize * LANES;
-        self.nodes.resize(rows, VACANT);
+        self.nodes.edit().resize(rows, VACANT);
         self.forces.resize(rows * D::N + PAD, 0.0);
         if key.is_pool() {
             let length = self.pooled_class_data.len() + class_data_len::<D>(count as usize);
-            self.pooled_class_data.resize(length, [0.0; LANES]);
+            self.pooled_class_data.edit().resize(length, [0.0; LANES]);
         }
         let plastic_inverse = self.new_plastic_inverse(key);
         self.batches.push(Batch {
@@ -302,7 +302,7 @@ impl<D: Dim> ElementBatches<D> {
     fn class_data_start(&mut self, class: u32, class_data: &[f32]) -> u32 {
         let all = &mut self.class_data;
         *self.class_data_starts.entry(class).or_insert_with(|| {
-            all.extend_from_slice(class_data);
+            all.edit().extend_from_slice(class_data);
             (all.len() - class_data.len()) as u32
         })
     }
@@ -329,11 +329,11 @@ impl<D: Dim> ElementBatches<D> {
                 plastic_inverse.set(lane, pending.plastic_inverse);
             }
             for (place, &node) in pending.element.nodes.iter().enumerate() {
-                self.nodes[first + place * LANES + lane] = node.0;
+                self.nodes.edit()[first + place * LANES + lane] = node.0;
             }
             if batch.key.is_pool() {
                 let pooled_class_data =
-                    &mut self.pooled_class_data[batch.class_data_start as usize..];
+                    &mut self.pooled_class_data.edit()[batch.class_data_start as usize..];
                 for (all, &number) in pooled_class_data.iter_mut().zip(class_data) {
                     all[lane] = number;
                 }
@@ -355,8 +355,9 @@ impl<D: Dim> ElementBatches<D> {
         }
         let id = pending.id;
         let capacity = self.assigned.len().max(id.index() + 1);
-        self.assigned.resize(capacity, (VACANT, 0));
-        self.assigned[id] = (index, lane as u8);
+        let assigned = self.assigned.edit();
+        assigned.resize(capacity, (VACANT, 0));
+        assigned[id] = (index, lane as u8);
     }
 }
 
