@@ -1,7 +1,8 @@
 //! Time that runs back in a round.
 //!
-//! During play, a copy of the round is kept at regular marks. When time runs back, the ticks after a mark are computed
-//! once more from the recorded inputs, and shown in reverse. The engine is deterministic, so they are the same to the bit.
+//! During play, a copy of the round is kept at regular marks, and copies of the last ticks lie closer together. Time that
+//! runs back first shows these. Meanwhile the ticks after an earlier mark are computed once more from the recorded inputs,
+//! and then shown in reverse. The engine is deterministic, so they are the same to the bit.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -37,9 +38,11 @@ pub const LONGEST: u64 = 600;
 /// Memory for all copies of a round [bytes].
 pub const MEMORY: usize = 64 << 20;
 
-/// Memory of a copy per node of its bodies [bytes], in 2D and 3D. A counting allocator found up to 645 and 861 in torn
-/// bodies.
-const PER_NODE: [usize; 2] = [680, 900];
+/// Memory of a copy per node of its bodies [bytes], in 2D and 3D: of one whose topology no other copy shares, and of one
+/// that shares it with the copy before. A counting allocator found up to 645 and 861 in bodies that tear in every tick;
+/// `--example rewind` measures the others.
+const ALONE: [usize; 2] = [680, 900];
+const SHARING: [usize; 2] = [540, 440];
 /// Interval between two adaptations of the plan to the growing bodies [ticks].
 const LOOK: u64 = 12;
 
@@ -62,6 +65,15 @@ impl AnyState {
         match self {
             Self::Plane(state) => state.tick(),
             Self::Space(state) => state.tick(),
+        }
+    }
+
+    /// Returns whether all bodies share their topology with those of an earlier state.
+    fn shares_topology_with(&self, before: &Self) -> bool {
+        match (self, before) {
+            (Self::Plane(state), Self::Plane(before)) => state.shares_topology_with(before),
+            (Self::Space(state), Self::Space(before)) => state.shares_topology_with(before),
+            _ => false,
         }
     }
 
@@ -100,29 +112,26 @@ struct Plan {
 }
 
 impl Plan {
-    /// Returns the plan for copies of a round in its current state.
-    fn for_copies_of(round: &AnyRound) -> Self {
-        let (nodes, per_node) = match round {
-            AnyRound::Plane(round) => (nodes_of(round.world()), PER_NODE[0]),
-            AnyRound::Space(round) => (nodes_of(round.world()), PER_NODE[1]),
+    /// Returns the plan for copies that take these amounts of memory [bytes]: on average at the marks, and at the shown
+    /// ticks. It is as long as possible up to [`LONGEST`], and as smooth as possible. There are copies at all marks and,
+    /// for two intervals between marks, at all shown ticks.
+    fn of(at_mark: usize, shown_copy: usize) -> Self {
+        let needed = |plan: &Plan| {
+            let [marks, shown] = [
+                plan.length / plan.mark + 1,
+                2 * plan.mark.div_ceil(plan.shown) + 2,
+            ];
+            marks as usize * at_mark + shown as usize * shown_copy
         };
-        let count = MEMORY / (nodes * per_node).max(1);
-        Self::of(count as u64)
-    }
-
-    /// Returns the plan for copies of which `count` fit into the memory: as long as possible up to [`LONGEST`], and as
-    /// smooth as possible. There are copies at all marks and, for two intervals between marks, at all shown ticks.
-    fn of(count: u64) -> Self {
-        let needed = |plan: &Plan| plan.length / plan.mark + 2 * plan.mark.div_ceil(plan.shown) + 3;
         for shown in 1..=3 {
-            // The number of copies is smallest if marks and shown states are equally many.
-            let marks = (8..=LONGEST).map(|mark| Plan {
+            // The memory is smallest if marks and shown states take about the same.
+            let marks = (8..=LONGEST / shown).map(|mark| Plan {
                 mark: mark * shown,
                 shown,
                 length: LONGEST,
             });
             let best = marks.min_by_key(needed).expect("the range is not empty");
-            if needed(&best) <= count {
+            if needed(&best) <= MEMORY {
                 return best;
             }
         }
@@ -133,7 +142,7 @@ impl Plan {
                 length: 30 * half_seconds,
             })
         });
-        let mut fitting = lengths.filter(|plan| needed(plan) <= count);
+        let mut fitting = lengths.filter(|plan| needed(plan) <= MEMORY);
         fitting.next().unwrap_or(Plan {
             mark: 12,
             shown: 4,
@@ -146,11 +155,13 @@ impl Plan {
 #[derive(Clone, Debug)]
 pub struct Rewind {
     plan: Plan,
-    /// Copies at marks, in the order of their ticks.
-    marks: VecDeque<AnyState>,
+    /// Copies at marks, in the order of their ticks, each with whether it shares its topology with the one before.
+    marks: VecDeque<(AnyState, bool)>,
+    /// Copies of the last ticks, as long as an interval between marks, in the order of their ticks.
+    recent: VecDeque<AnyState>,
     /// Inputs of the round when time began to run back.
     frames: Vec<InputFrame>,
-    /// Changes of a playground, likewise.
+    /// Changes of a playground up to then.
     changes: Vec<TimedChange>,
     /// States that are shown next, in the order of their ticks; the last one comes first.
     shown: Vec<AnyState>,
@@ -164,9 +175,11 @@ pub struct Rewind {
 impl Rewind {
     /// Begins with a round at its start.
     pub fn new(round: &AnyRound) -> Self {
+        let marks = VecDeque::from([(AnyState::of(round), false)]);
         Self {
-            plan: Plan::for_copies_of(round),
-            marks: VecDeque::from([AnyState::of(round)]),
+            plan: plan_for(round, &marks),
+            marks,
+            recent: VecDeque::new(),
             frames: Vec::new(),
             changes: Vec::new(),
             shown: Vec::new(),
@@ -181,10 +194,20 @@ impl Rewind {
         if tick.is_multiple_of(LOOK) {
             self.adapt(round);
         }
+        if tick.is_multiple_of(self.plan.shown) {
+            self.recent.push_back(AnyState::of(round));
+            let is_old = |state: &AnyState| state.tick() + self.plan.mark < tick;
+            while self.recent.front().is_some_and(is_old) {
+                self.recent.pop_front();
+            }
+        }
         if tick.is_multiple_of(self.plan.mark) {
-            self.marks.push_back(AnyState::of(round));
-            let is_old = |mark: Option<&AnyState>| {
-                mark.is_some_and(|mark| mark.tick() + self.plan.length <= tick)
+            let state = AnyState::of(round);
+            let before = self.marks.back();
+            let shares = before.is_some_and(|(before, _)| state.shares_topology_with(before));
+            self.marks.push_back((state, shares));
+            let is_old = |mark: Option<&(AnyState, bool)>| {
+                mark.is_some_and(|(mark, _)| mark.tick() + self.plan.length <= tick)
             };
             // The mark before the earliest tick that can be shown stays.
             while is_old(self.marks.get(1)) {
@@ -193,16 +216,16 @@ impl Rewind {
         }
     }
 
-    /// Makes a new plan if the bodies have more nodes than before, as they get where they tear, and drops marks that are
-    /// closer to each other than it asks for.
+    /// Makes a new plan if copies take more or less memory than before, as they do when bodies tear, and drops marks that
+    /// are closer to each other than it asks for.
     fn adapt(&mut self, round: &AnyRound) {
-        let plan = Plan::for_copies_of(round);
+        let plan = plan_for(round, &self.marks);
         if plan == self.plan {
             return;
         }
         self.plan = plan;
         let mut last = None;
-        self.marks.retain(|mark| {
+        self.marks.retain(|(mark, _)| {
             let is_close = last.is_some_and(|last| mark.tick() < last + plan.mark);
             if !is_close {
                 last = Some(mark.tick());
@@ -217,7 +240,7 @@ impl Rewind {
         if round.progress().outcome.is_some() || !is_recorded {
             return 0;
         }
-        let earliest = self.marks.front().map_or(0, AnyState::tick);
+        let earliest = self.marks.front().map_or(0, |(mark, _)| mark.tick());
         round.ticks().saturating_sub(earliest).min(self.plan.length)
     }
 
@@ -230,10 +253,15 @@ impl Rewind {
     pub fn begin(&mut self, round: &AnyRound) {
         self.frames = round.frames().to_vec();
         self.changes = round.changes().to_vec();
-        self.shown.clear();
         self.before.clear();
         self.computing = None;
-        self.compute_up_to(round, round.ticks());
+        let is_earlier = |state: &AnyState| state.tick() < round.ticks();
+        self.shown = std::mem::take(&mut self.recent)
+            .into_iter()
+            .filter(is_earlier)
+            .collect();
+        let first = self.shown.first().map_or(round.ticks(), AnyState::tick);
+        self.compute_up_to(round, first);
     }
 
     /// Computes a tick of the states that will be shown. Returns whether there is nothing left to compute now.
@@ -270,30 +298,45 @@ impl Rewind {
         };
         let tick = state.tick();
         state.restore(round);
-        while self.marks.back().is_some_and(|mark| mark.tick() > tick) {
+        while { self.marks.back() }.is_some_and(|(mark, _)| mark.tick() > tick) {
             self.marks.pop_back();
         }
         true
     }
 
-    /// Lets time run forward again.
+    /// Lets time run forward again. The states that were not shown are the copies of the last ticks.
     pub fn end(&mut self) {
         self.frames = Vec::new();
         self.changes = Vec::new();
-        self.shown = Vec::new();
+        self.recent = std::mem::take(&mut self.shown).into();
         self.before = Vec::new();
         self.computing = None;
     }
 
     /// Begins to compute the states from the last mark before a tick up to that tick.
     fn compute_up_to(&mut self, round: &AnyRound, end: u64) {
-        let mark = self.marks.iter().rfind(|mark| mark.tick() < end);
-        let Some(mark) = mark else {
+        let mark = self.marks.iter().rfind(|(mark, _)| mark.tick() < end);
+        let Some((mark, _)) = mark else {
             return;
         };
         self.before = vec![mark.clone()];
         self.computing = Some((mark.clone().continued(round), end));
     }
+}
+
+/// Returns the plan for further copies of a round, of which there are copies at marks.
+fn plan_for(round: &AnyRound, marks: &VecDeque<(AnyState, bool)>) -> Plan {
+    let (nodes, dim) = match round {
+        AnyRound::Plane(round) => (nodes_of(round.world()), 0),
+        AnyRound::Space(round) => (nodes_of(round.world()), 1),
+    };
+    let alone = marks.iter().filter(|(_, shares)| !shares).count();
+    let sharing = marks.len() - alone;
+    let all = nodes * (alone * ALONE[dim] + sharing * SHARING[dim]);
+    // The states of an interval in which bodies tear do not share their topology.
+    let tears = marks.iter().skip(1).any(|(_, shares)| !shares);
+    let shown = if tears { ALONE[dim] } else { SHARING[dim] };
+    Plan::of(all / marks.len().max(1), nodes * shown)
 }
 
 fn nodes_of<D: Dim>(world: &World<D>) -> usize {
@@ -307,14 +350,20 @@ mod tests {
 
     #[test]
     fn plans_keep_to_the_memory() {
-        for count in 8..400 {
-            let plan = Plan::of(count);
-            // Marks, the states of two intervals between marks, and three copies in use.
-            let copies = plan.length / plan.mark + 2 * plan.mark.div_ceil(plan.shown) + 3;
-            assert!(copies <= count.max(11), "{count}: {plan:?}");
+        for at_mark in (50_000..6_000_000).step_by(70_000) {
+            for shown in [at_mark / 2, at_mark, 2 * at_mark] {
+                let plan = Plan::of(at_mark, shown);
+                // Marks, the states of two intervals between marks, and two copies in use.
+                let marks = (plan.length / plan.mark + 1) as usize;
+                let states = (2 * plan.mark.div_ceil(plan.shown) + 2) as usize;
+                let all = marks * at_mark + states * shown;
+                let is_least = plan.length == 24;
+                assert!(all <= MEMORY || is_least, "{at_mark}, {shown}: {plan:?}");
+            }
         }
-        let long = Plan::of(90);
+        let long = Plan::of(700_000, 700_000);
         assert_eq!((long.length, long.shown), (LONGEST, 1));
-        assert!(Plan::of(30).length >= 240 && Plan::of(30).shown <= 3);
+        let torn = Plan::of(2_000_000, 2_000_000);
+        assert!(torn.length >= 240 && torn.shown <= 3, "{torn:?}");
     }
 }
