@@ -65,6 +65,8 @@ pub struct Game {
     pub chosen: usize,
     /// Returns today's date, in the form 2026-11-28. `None` = there is no level of the day.
     pub calendar: Option<fn() -> String>,
+    /// Level of the day, which is also in [`Self::levels`].
+    day: Option<Arc<Level>>,
     /// Progress of the ending.
     pub ending: Ending,
     /// Current round.
@@ -120,6 +122,7 @@ impl Game {
             levels,
             chosen: 0,
             calendar: None,
+            day: None,
             ending: Ending::default(),
             dialog: Dialog::default(),
             shelf: SavedRounds::default(),
@@ -198,7 +201,13 @@ impl Game {
         self.attracted += 1;
         let shown = self.public.as_ref();
         let shown = shown.and_then(|public| public.attraction(self.attracted));
-        self.bout.session = shown.unwrap_or_else(|| attract(self.attracted));
+        // In calm mode nothing tears, so only the round that is won by squeezing is shown.
+        let number = if self.settings.calm {
+            0
+        } else {
+            self.attracted
+        };
+        self.bout.session = shown.unwrap_or_else(|| attract(number));
     }
 
     /// Returns the visible screen.
@@ -251,8 +260,23 @@ impl Game {
     /// Returns the indices in [`Self::levels`] of the levels of a section.
     pub fn levels_of(&self, section: Section) -> Vec<usize> {
         let all = 0..self.levels.len();
-        all.filter(|&index| Section::of(&self.levels[index], self.is_own(index)) == section)
+        all.filter(|&index| self.section_of(index) == section)
             .collect()
+    }
+
+    /// Returns the section of the level with this index in [`Self::levels`].
+    fn section_of(&self, index: usize) -> Section {
+        match self.is_of_day(index) {
+            true => Section::Day,
+            false => Section::of(&self.levels[index], self.is_own(index)),
+        }
+    }
+
+    /// Whether the level with this index in [`Self::levels`] is the level of the day.
+    fn is_of_day(&self, index: usize) -> bool {
+        self.day
+            .as_ref()
+            .is_some_and(|day| Arc::ptr_eq(day, &self.levels[index]))
     }
 
     /// Returns why a section is closed; `None` if it is open.
@@ -268,7 +292,7 @@ impl Game {
     pub fn lock_of_level(&self, index: usize) -> Option<Lock> {
         let level = &self.levels[index];
         let must_tear = self.settings.calm && level.game().ignores(Assist::Unbreakable);
-        let section = Section::of(level, self.is_own(index));
+        let section = self.section_of(index);
         must_tear
             .then_some(Lock::Calm)
             .or_else(|| self.lock_of(section))
@@ -389,6 +413,7 @@ impl Game {
 
     fn begin(&mut self, session: Session) {
         self.note_end();
+        self.ending.is_due = false;
         let session = match self.may_rewind() {
             true => session,
             false => session.without_rewind(),
@@ -452,11 +477,15 @@ impl Game {
         self.notify(format!("{name}: {reason}"));
     }
 
-    fn offer(&mut self, level: Level) {
+    fn offer(&mut self, mut level: Level) {
         let notes = level.scene().notes().iter();
         let notes: Vec<String> = notes.map(self.words().import_note).collect();
         let known = self.levels.iter().position(|known| **known == level);
         let index = known.unwrap_or_else(|| {
+            if is_daily(&level) {
+                // A level of the day that was sent stays, and does not take the place of today's.
+                level.id = format!("sent-{}", level.id);
+            }
             self.levels.retain(|known| known.id != level.id);
             self.levels.push(Arc::new(level));
             self.levels.len() - 1
@@ -492,18 +521,24 @@ impl Game {
 
     /// Whether the level with index `index` in [`Self::levels`] is one that the player added.
     pub fn is_own(&self, index: usize) -> bool {
-        index >= built_in().count() && !is_daily(&self.levels[index])
+        index >= built_in().count() && !self.is_of_day(index)
     }
 
     /// Puts the level of the day into the list in place of that of an earlier day. `today` has the form 2026-11-28.
     fn follow_date(&mut self, today: &str) {
-        let chosen = self.levels[self.chosen].clone();
-        let is_known = |level: &Arc<Level>| is_daily(level) && level.id.ends_with(today);
-        if !self.levels.iter().any(is_known) {
-            self.levels.retain(|level| !is_daily(level));
-            self.levels.extend(level_of(today).map(Arc::new));
+        if { self.day.iter() }.any(|day| day.id.ends_with(today)) {
+            return;
         }
-        let place = self.levels.iter().position(|level| level.id == chosen.id);
+        let chosen = self.levels[self.chosen].clone();
+        if let Some(before) = self.day.take() {
+            self.levels.retain(|level| !Arc::ptr_eq(level, &before));
+        }
+        self.day = level_of(today).map(Arc::new);
+        self.levels.extend(self.day.clone());
+        let place = self
+            .levels
+            .iter()
+            .position(|level| Arc::ptr_eq(level, &chosen));
         self.chosen = place.unwrap_or(0);
     }
 

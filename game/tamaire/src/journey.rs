@@ -2,7 +2,6 @@
 
 use crate::records::{Records, WishName};
 use tamaire_play::Level;
-use tamaire_play::daily::is_daily;
 use tamaire_play::level::{CHAPTERS, OPENING_SHARE, PATH};
 
 /// Earned stars and all stars of some levels. A level has a star for the win and one for each of its goals.
@@ -119,7 +118,6 @@ impl Section {
         const FIRST: [&str; 4] = ["classic", "classic-3d", "sandbox", "sandbox-3d"];
         match chapter_of(level) {
             _ if is_own => Self::Own,
-            _ if is_daily(level) => Self::Day,
             Some(chapter) => Self::Chapter(chapter),
             None if FIRST.contains(&level.id.as_str()) => Self::First,
             None => Self::More,

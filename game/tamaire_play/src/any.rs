@@ -1,6 +1,6 @@
 //! Rounds with the dimension chosen at run time. They suit callers that do not access the bodies.
 
-use crate::playground::{Change, ChangeError, TimedChange};
+use crate::playground::{Change, ChangeError, TimedChange, Tool};
 use crate::round::Hand;
 use crate::{InputFrame, Level, Progress, Round};
 use fuwafuwa::{DEFAULT_TICK, Dim2, Dim3, DimVector, Event, StepReport, Vec3};
@@ -45,6 +45,19 @@ impl AnyRound {
     /// As [`Round::change`].
     pub fn change(&mut self, change: Change) -> Result<(), ChangeError> {
         both!(self, round => round.change(change))
+    }
+
+    /// See [`Round::tool`].
+    pub fn tool(&self) -> (Tool, bool) {
+        both!(self, round => round.tool())
+    }
+
+    /// Returns the downward gravity [m/s²] and the drag of the air [1/s].
+    pub fn gravity_and_air(&self) -> [f32; 2] {
+        both!(self, round => {
+            let config = round.world().config();
+            [-config.gravity.to_vec3().y, config.drag]
+        })
     }
 
     /// See [`Round::changes`].

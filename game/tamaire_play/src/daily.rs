@@ -36,7 +36,7 @@ pub fn level_of(date: &str) -> Option<Level> {
     Some(twisted)
 }
 
-/// Whether a level is one of the day.
+/// Whether a level has the name of a level of the day.
 pub fn is_daily(level: &Level) -> bool {
     level.id.starts_with(PREFIX)
 }
@@ -60,7 +60,8 @@ fn greatest_divisor(a: u64, b: u64) -> u64 {
     }
 }
 
-/// Returns the number of days from 2000-03-01 to a date of this form; `None` for an earlier date or another form.
+/// Returns the number of days from 2000-03-01 to a date of the form 2026-11-28; `None` for another form, and for years
+/// before 2001. A day that its month does not have counts as one of the next month.
 fn day_of(date: &str) -> Option<u64> {
     let parts: Vec<u64> = { date.splitn(3, '-') }
         .map(|part| part.parse().ok())

@@ -2,7 +2,7 @@
 //!
 //! A [`Change`] is made between two ticks. It is part of the recording, so a replay and time that runs back make it again.
 
-use crate::Round;
+use crate::{Assist, Round};
 use fuwafuwa::{
     Blade, Dim, DimVector, Joint, JointAnchor, JointHandle, Layers, Shape, SoftBody,
     SoftBodyHandle, Vec3, World,
@@ -15,6 +15,10 @@ use serde::{Deserialize, Serialize};
 pub const MOST_NODES: usize = 9000;
 /// Maximum number of changes in a recording.
 pub(crate) const MOST_CHANGES: usize = 20_000;
+/// Maximum number of changes between two ticks.
+pub(crate) const MOST_AT_ONCE: usize = 32;
+/// Maximum number of joints. Then no more pins can be added.
+const MOST_JOINTS: usize = 200;
 
 /// Width of an added body [m].
 const WIDTH: f32 = 0.5;
@@ -64,21 +68,28 @@ impl Stuff {
         }
     }
 
-    /// Returns the table of the material in a scene file.
-    fn text(self) -> &'static str {
-        match self {
-            Self::Jelly => "young = 2500.0\nstrength = 1200.0\ntoughness = 150.0",
-            Self::Rubber => "young = 9000.0\nunbreakable = true",
-            Self::Biscuit => "young = 12000.0\nstrength = 1500.0\ntoughness = 120.0",
-            Self::Clay => {
-                "young = 6000.0\nstrength = 4000.0\ntoughness = 600.0\nyield_strain = 0.05\nplastic_limit = 2.5"
+    /// Returns the table of the material in a scene file. It is unbreakable if its nature or the level says so.
+    fn text(self, is_unbreakable: bool) -> String {
+        let (body, tears) = match self {
+            Self::Jelly => ("young = 2500.0", Some([1200.0, 150.0])),
+            Self::Rubber => ("young = 9000.0", None),
+            Self::Biscuit => ("young = 12000.0", Some([1500.0, 120.0])),
+            Self::Clay => (
+                "young = 6000.0\nyield_strain = 0.05\nplastic_limit = 2.5",
+                Some([4000.0, 600.0]),
+            ),
+            Self::Stone => ("young = 20000.0\ndensity = 300.0", None),
+        };
+        match tears.filter(|_| !is_unbreakable) {
+            Some([strength, toughness]) => {
+                format!("{body}\nstrength = {strength}\ntoughness = {toughness}")
             }
-            Self::Stone => "young = 20000.0\nunbreakable = true\ndensity = 300.0",
+            None => format!("{body}\nunbreakable = true"),
         }
     }
 }
 
-/// What the first player's hand does.
+/// Tool of the first player's hand.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tool {
@@ -87,7 +98,7 @@ pub enum Tool {
     Push,
     /// Holds what it touches, while it is pressed.
     Grab,
-    /// Cuts what it passes, while it is pressed.
+    /// Cuts what it passes, while it is pressed. In a level in which nothing tears, it cuts nothing.
     Knife,
     /// Pins what it touches when it is pressed: two bodies to each other, or one to its place.
     Pin,
@@ -145,9 +156,12 @@ pub enum ChangeError {
     /// The level has a basket.
     #[error("expected a level without a basket")]
     NoPlayground,
-    /// There are too many bodies.
-    #[error("expected at most {MOST_NODES} nodes in all bodies")]
+    /// There are too many bodies or pins.
+    #[error("expected at most {MOST_NODES} nodes in all bodies, and {MOST_JOINTS} joints")]
     Full,
+    /// There are too many changes, between two ticks or in the whole round.
+    #[error("expected at most {MOST_AT_ONCE} changes at once, and {MOST_CHANGES} in a round")]
+    TooMany,
     /// The change cannot be made.
     #[error("{0}")]
     Invalid(String),
@@ -156,8 +170,8 @@ pub enum ChangeError {
 /// State of the first player's tool.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ToolState {
-    tool: Tool,
-    is_pressed: bool,
+    pub(crate) tool: Tool,
+    pub(crate) is_pressed: bool,
     /// Pins that hold what is grabbed.
     grabbed: Vec<JointHandle>,
     /// Position of the hand after the last tick [m].
@@ -173,16 +187,21 @@ impl<D: Dim> Round<D> {
         if !self.baskets().is_empty() {
             return Err(ChangeError::NoPlayground);
         }
+        if self.waiting().len() >= MOST_AT_ONCE || self.changes().len() >= MOST_CHANGES {
+            return Err(ChangeError::TooMany);
+        }
         if let Change::Add { form, stuff, at } = change {
-            let nodes = |body: &SoftBody<D>| body.mesh().nodes().count();
-            let more = nodes(&body_of::<D>(form, stuff, at)?);
-            let all: usize = self
-                .world()
-                .soft_bodies()
-                .map(|(_, body)| nodes(body))
-                .sum();
-            // Bodies of the same size may be waiting to be added.
-            if all + more * (1 + self.waiting_bodies()) > MOST_NODES {
+            let more = nodes(&self.body_of(form, stuff, at)?);
+            // A waiting change may clear the room, and bodies of the same size may be waiting.
+            let cleared = self
+                .waiting()
+                .iter()
+                .rposition(|change| *change == Change::Clear);
+            let later = &self.waiting()[cleared.map_or(0, |place| place + 1)..];
+            let adds = |change: &&Change| matches!(change, Change::Add { .. });
+            let waiting = later.iter().filter(adds).count();
+            let present = if cleared.is_some() { 0 } else { self.nodes() };
+            if present + more * (1 + waiting) > MOST_NODES {
                 return Err(ChangeError::Full);
             }
         }
@@ -192,11 +211,17 @@ impl<D: Dim> Round<D> {
 
     /// Makes a change now.
     pub(crate) fn make(&mut self, change: Change) -> Result<(), ChangeError> {
+        if !self.baskets().is_empty() {
+            return Err(ChangeError::NoPlayground);
+        }
         let hand = self.first_hand();
         let config = *self.world().config();
         match change {
             Change::Add { form, stuff, at } => {
-                let body = body_of::<D>(form, stuff, at)?;
+                let body = self.body_of(form, stuff, at)?;
+                if self.nodes() + nodes(&body) > MOST_NODES {
+                    return Err(ChangeError::Full);
+                }
                 self.world_mut().add_soft_body(body).map_err(invalid)?;
             }
             Change::Clear => {
@@ -254,6 +279,9 @@ impl<D: Dim> Round<D> {
         let radius = self.radius_of_hand() + REACH;
         let touched = bodies_near(self.world(), at, radius);
         let anchor = |body: SoftBodyHandle| JointAnchor::on(body, at).within(radius);
+        if self.world().joints().count() >= MOST_JOINTS {
+            return;
+        }
         match self.tool_mut().tool {
             Tool::Grab => {
                 for body in touched {
@@ -297,18 +325,76 @@ impl<D: Dim> Round<D> {
         };
         let now = self.position_of_hand().to_vec3();
         self.tool_mut().last = now;
-        let ends = [-EDGE, EDGE].map(|height| D::Vector::from_vec3(last + height * Vec3::Y));
-        let edge = match D::N {
-            2 => [D::Vector::from_vec3(last); 2],
-            _ => ends,
-        };
+        if now == last || self.is_unbreakable() {
+            return;
+        }
+        let edge = [-EDGE, EDGE].map(|height| D::Vector::from_vec3(last + height * Vec3::Y));
         let blade = Blade::swept(edge, D::Vector::from_vec3(now - last));
-        let bodies: Vec<_> = self.world().soft_bodies().map(|(body, _)| body).collect();
+        let [low, high] = [
+            last.min(now) - EDGE * Vec3::Y,
+            last.max(now) + EDGE * Vec3::Y,
+        ];
+        let is_passed = |body: &SoftBody<D>| {
+            let voxel = Vec3::splat(body.grid().voxel_size());
+            let mut nodes = body
+                .mesh()
+                .nodes()
+                .map(|(node, _)| body.positions()[node].xyz());
+            let [low, high] = [low - voxel, high + voxel];
+            nodes.any(|at| (0..D::N).all(|axis| (low[axis]..=high[axis]).contains(&at[axis])))
+        };
+        let bodies = self
+            .world()
+            .soft_bodies()
+            .filter(|(_, body)| is_passed(body));
+        let bodies: Vec<_> = bodies.map(|(body, _)| body).collect();
         for body in bodies {
-            // A body of a coarse grading cannot be cut.
-            let _cut = self.world_mut().cut(body, &blade);
+            let cut = self.world_mut().cut(body, &blade);
+            cut.expect("the body is in the world");
         }
     }
+
+    /// Returns whether nothing tears in the level.
+    fn is_unbreakable(&self) -> bool {
+        self.level().game().assists.contains(&Assist::Unbreakable)
+    }
+
+    /// Returns the number of nodes of all bodies.
+    fn nodes(&self) -> usize {
+        self.world()
+            .soft_bodies()
+            .map(|(_, body)| nodes(body))
+            .sum()
+    }
+
+    /// Builds a body to be added.
+    fn body_of(&self, form: Form, stuff: Stuff, at: [i16; 3]) -> Result<SoftBody<D>, ChangeError> {
+        let mut at = at.map(|k| f32::from(k) / UNITS - 0.5 * WIDTH);
+        if D::N == 2 {
+            at[2] = 0.0;
+        }
+        let is_unbreakable = self.is_unbreakable();
+        let material = |stuff: Stuff| format!("[[material]]\n{}\n", stuff.text(is_unbreakable));
+        let materials = Stuff::ALL.map(material).concat();
+        let invalid = |error: &dyn std::fmt::Display| ChangeError::Invalid(error.to_string());
+        let form = toml::Value::try_from(form).map_err(|error| invalid(&error))?;
+        let place = Stuff::ALL.iter().position(|known| *known == stuff);
+        let number = 1 + place.expect("every material is listed");
+        let text = format!(
+            "dim = {}\n{materials}[[body]]\nshape = {form}\nn = {}\nwidth = {WIDTH}\nmaterial = {number}\nat = {at:?}\n",
+            D::N,
+            VOXELS[D::N - 2],
+        );
+        let scene = Scene::read("body", &text, &[]).map_err(|error| invalid(&error))?;
+        let mut world = scene.build::<D>().map_err(|error| invalid(&error))?;
+        let body = world.nth_soft_body(0);
+        let body = body.expect("the scene has a body");
+        world.remove(body).map_err(|error| invalid(&error))
+    }
+}
+
+fn nodes<D: Dim>(body: &SoftBody<D>) -> usize {
+    body.mesh().nodes().count()
 }
 
 fn invalid(error: fuwafuwa::Error) -> ChangeError {
@@ -332,33 +418,4 @@ fn bodies_near<D: Dim>(world: &World<D>, at: D::Vector, reach: f32) -> Vec<SoftB
     let mut near: Vec<_> = bodies.filter(|(away, _)| away.is_finite()).collect();
     near.sort_by(|a, b| a.0.total_cmp(&b.0));
     near.into_iter().map(|(_, body)| body).collect()
-}
-
-/// Builds a body to be added.
-fn body_of<D: Dim>(form: Form, stuff: Stuff, at: [i16; 3]) -> Result<SoftBody<D>, ChangeError> {
-    let mut at = at.map(|k| f32::from(k) / UNITS - 0.5 * WIDTH);
-    if D::N == 2 {
-        at[2] = 0.0;
-    }
-    let materials = Stuff::ALL
-        .map(|stuff| format!("[[material]]\n{}\n", stuff.text()))
-        .concat();
-    let form =
-        toml::Value::try_from(form).map_err(|error| ChangeError::Invalid(error.to_string()))?;
-    let number = 1 + Stuff::ALL
-        .iter()
-        .position(|known| *known == stuff)
-        .unwrap_or(0);
-    let text = format!(
-        "dim = {}\n{materials}[[body]]\nshape = {form}\nn = {}\nwidth = {WIDTH}\nmaterial = {number}\nat = {at:?}\n",
-        D::N,
-        VOXELS[D::N - 2],
-    );
-    let wrong = |error: fuwafuwa_scenes::scene::SceneError| ChangeError::Invalid(error.to_string());
-    let scene = Scene::read("body", &text, &[]).map_err(wrong)?;
-    let mut world = scene.build::<D>().map_err(wrong)?;
-    let body = world
-        .nth_soft_body(0)
-        .ok_or_else(|| ChangeError::Invalid("no body".into()))?;
-    world.remove(body).map_err(invalid)
 }

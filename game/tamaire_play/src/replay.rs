@@ -1,7 +1,7 @@
 //! Recorded rounds, to be stored, watched, raced and shared.
 
 use crate::level::{LevelError, has_line, stem};
-use crate::playground::{MOST_CHANGES, TimedChange};
+use crate::playground::{MOST_AT_ONCE, MOST_CHANGES, TimedChange};
 use crate::round::{MAX_TICKS, start_targets};
 use crate::rules::is_zero;
 use crate::{AnyRound, InputFrame, Level, Outcome, Round};
@@ -201,6 +201,16 @@ impl Replay {
         let found = self.changes.len();
         if found > MOST_CHANGES {
             let reason = format!("expected at most {MOST_CHANGES} changes, found {found}");
+            return Err(ReplayError::Text(reason));
+        }
+        let game = self.scene.game.as_ref();
+        if found > 0 && game.is_some_and(|game| !game.all_baskets().is_empty()) {
+            let reason = "changes: expected none in a level with a basket".into();
+            return Err(ReplayError::Text(reason));
+        }
+        let mut at_once = self.changes.chunk_by(|a, b| a.tick == b.tick);
+        if at_once.any(|changes| changes.len() > MOST_AT_ONCE) {
+            let reason = format!("changes: expected at most {MOST_AT_ONCE} between two ticks");
             return Err(ReplayError::Text(reason));
         }
         if !self.changes.is_sorted_by_key(|change| change.tick) {

@@ -1,6 +1,6 @@
 //! A round: one attempt at a level.
 
-use crate::playground::{Change, MOST_CHANGES, TimedChange, ToolState};
+use crate::playground::{Change, MOST_CHANGES, TimedChange, Tool, ToolState};
 use crate::rules::Basket;
 use crate::{InputFrame, Level, PLAYERS, Progress};
 use fuwafuwa::inspect::is_hand;
@@ -97,6 +97,15 @@ pub(crate) struct RoundState<D: Dim> {
 }
 
 impl<D: Dim> RoundState<D> {
+    /// Returns whether all bodies share their topology with those of another state.
+    pub fn shares_topology_with(&self, other: &Self) -> bool {
+        let [own, others] = [self, other].map(|state| state.world.soft_bodies());
+        let count = |state: &Self| state.world.soft_bodies().count();
+        let mut pairs = own.zip(others);
+        count(self) == count(other)
+            && pairs.all(|((_, own), (_, other))| own.shares_topology_with(other))
+    }
+
     /// Returns the number of ticks since the start of the round.
     pub fn tick(&self) -> u64 {
         self.world.ticks()
@@ -272,10 +281,14 @@ impl<D: Dim> Round<D> {
         }
     }
 
-    /// Returns the number of bodies that will be added at the beginning of the next tick.
-    pub(crate) fn waiting_bodies(&self) -> usize {
-        let adds = |change: &&Change| matches!(change, Change::Add { .. });
-        self.waiting.iter().filter(adds).count()
+    /// Returns the changes that will be made at the beginning of the next tick.
+    pub(crate) fn waiting(&self) -> &[Change] {
+        &self.waiting
+    }
+
+    /// Returns the first player's tool in a playground, and whether it is pressed.
+    pub fn tool(&self) -> (Tool, bool) {
+        (self.tool.tool, self.tool.is_pressed)
     }
 
     pub(crate) fn world_mut(&mut self) -> &mut World<D> {
@@ -310,8 +323,10 @@ impl<D: Dim> Round<D> {
             shape: Shape::ball(radius),
             ..self.hand(old).definition()
         };
+        // The new hand takes the place of the old one, so the players keep their order.
+        self.world.remove(old)?;
         self.players[0].hand = self.world.add_rigid_body(definition)?;
-        self.world.remove(old).map(drop)
+        Ok(())
     }
 
     /// Counts a rewind of this round.
@@ -346,7 +361,8 @@ impl<D: Dim> Round<D> {
             let mut felt = Hand::from(self.hand(player.hand));
             for (&part, &(number, _)) in player.followers.iter().zip(&start.followers) {
                 let text = &self.level.scene().hand[number];
-                let [ahead, at_rest] = [[1.0; 3], [0.0; 3]].map(|by| Vec3::from(text.following(by)));
+                let [ahead, at_rest] =
+                    [[1.0; 3], [0.0; 3]].map(|by| Vec3::from(text.following(by)));
                 let way = ahead - at_rest;
                 let forces = Hand::from(self.hand(part)).reactions;
                 for (sum, force) in felt.reactions.iter_mut().zip(forces) {
@@ -602,11 +618,24 @@ mod tests {
             [player.hand, player.followers[0]].map(|hand| Hand::from(round.hand(hand)))
         };
         let felt = &round.felt_hands()[0];
-        let pushes = |hand: &Hand| hand.reactions.iter().map(|reaction| reaction.contact.x).sum::<f32>();
-        assert!(pushes(&leader) < -1.0 && pushes(&follower) > 1.0, "they press");
+        let pushes = |hand: &Hand| {
+            hand.reactions
+                .iter()
+                .map(|reaction| reaction.contact.x)
+                .sum::<f32>()
+        };
+        assert!(
+            pushes(&leader) < -1.0 && pushes(&follower) > 1.0,
+            "they press"
+        );
         let expected = pushes(&leader) - pushes(&follower);
         assert!((pushes(felt) - expected).abs() < 1e-3 * expected.abs());
-        let lifts = |hand: &Hand| hand.reactions.iter().map(|reaction| reaction.contact.y).sum::<f32>();
+        let lifts = |hand: &Hand| {
+            hand.reactions
+                .iter()
+                .map(|reaction| reaction.contact.y)
+                .sum::<f32>()
+        };
         assert!((lifts(felt) - lifts(&leader) - lifts(&follower)).abs() < 1e-2);
     }
 

@@ -35,7 +35,7 @@ pub struct CurrentRound {
     pub stepping: bool,
     /// Whether the mouse holds the button on the screen that lets time run back.
     pub is_rewind_pressed: bool,
-    /// What the player has chosen in a playground.
+    /// Choices of the player in a playground.
     pub toys: Toys,
     /// Outcome of a won round, and whether it is the player's best for its route. `None` for replays.
     pub won: Option<(Outcome, bool)>,

@@ -52,7 +52,8 @@ impl Game {
             let record = self.records.of(&self.levels[index].id);
             record.is_some_and(Record::is_won)
         };
-        self.path().iter().all(is_won)
+        let path = self.path();
+        !path.is_empty() && path.iter().all(is_won)
     }
 
     /// Shows the ending.

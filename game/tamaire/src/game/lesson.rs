@@ -69,7 +69,7 @@ impl Tutorial {
         is_stuck
     }
 
-    /// Returns whether it is time to show the first move of the level; then the time begins anew.
+    /// Returns whether it is time to show the first move of the level; then the time begins again from 0.
     pub(super) fn wants_first_move(&mut self) -> bool {
         let wants = self.unshown >= UNTIL_FIRST_MOVE;
         if wants {

@@ -110,6 +110,14 @@ impl Game {
     pub(super) fn end_rewind(&mut self) {
         self.bout.session.run_forward();
         self.bout.hopeless = None;
+        let bout = &mut self.bout;
+        bout.toys.follow(bout.session.round());
+        // The switches are as they were, without a click.
+        drop(heard::switched(
+            bout.session.round(),
+            &mut bout.switches,
+            None,
+        ));
         let is_space = self.bout.turn().is_some();
         self.controls.begin(is_space);
     }

@@ -5,7 +5,7 @@ use crate::input::Action;
 use tamaire_play::AnyRound;
 use tamaire_play::playground::{Change, ChangeError, Stuff, Tool};
 
-/// What the player has chosen in a playground.
+/// Choices of the player in a playground.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Toys {
     /// Material of the bodies that are added.
@@ -29,17 +29,25 @@ pub struct Toys {
 impl Toys {
     /// Returns the choices at the start of a round.
     pub(super) fn of(round: &AnyRound) -> Self {
-        let scene = round.level().scene();
-        Self {
+        let mut toys = Self {
             stuff: Stuff::Jelly,
             tool: Tool::Push,
-            gravity: -scene.gravity[1],
-            air: scene.drag,
-            hand: 100.0 * round.hands()[0].radius,
+            gravity: 0.0,
+            air: 0.0,
+            hand: 0.0,
             has_sliders: false,
             is_pointer_down: false,
             is_pressed: false,
-        }
+        };
+        toys.follow(round);
+        toys
+    }
+
+    /// Takes over what is the case in a round, for example after time ran back.
+    pub(super) fn follow(&mut self, round: &AnyRound) {
+        (self.tool, self.is_pressed) = round.tool();
+        [self.gravity, self.air] = round.gravity_and_air();
+        self.hand = 100.0 * round.hands()[0].radius;
     }
 }
 
@@ -51,10 +59,20 @@ impl Game {
 
     /// Makes a change of the playground, and tells the player if it is refused.
     pub fn change_playground(&mut self, change: Change) {
-        match self.bout.session.change(change) {
-            Ok(()) => {}
-            Err(ChangeError::Full) => self.notify(self.words().room_is_full.to_string()),
-            Err(error) => self.notify(error.to_string()),
+        if matches!(
+            change,
+            Change::Tool(_) | Change::HandSize(_) | Change::Clear
+        ) {
+            // These let go what is held. If the player still presses, the tool is pressed again.
+            self.bout.toys.is_pressed = false;
+        }
+        if self
+            .bout
+            .session
+            .change(change)
+            .is_err_and(|error| error != ChangeError::NoPlayground)
+        {
+            self.notify(self.words().room_is_full.to_string());
         }
     }
 

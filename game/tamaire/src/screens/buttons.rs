@@ -2,6 +2,7 @@
 //! actions that keys and pads have buttons for.
 
 use super::icons;
+use super::toys;
 use crate::game::{Game, ScreenButton};
 use crate::input::{Action, InputMethod};
 use app_shell::Theme;
@@ -62,7 +63,8 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
     let step = vec2(side + scale * GAP, 0.0);
     let in_row = |index: usize| Rect::from_min_size(corner + index as f32 * step, vec2(side, side));
     let end = in_row(row.len()).left();
-    let last = ui.max_rect().right_bottom() - scale * vec2(EDGE + THUMB, EDGE + THUMB);
+    let above = vec2(0.0, toys::height(game, ui));
+    let last = ui.max_rect().right_bottom() - scale * vec2(EDGE + THUMB, EDGE + THUMB) - above;
     let count = thumb.len();
     let in_corner = |index: usize| {
         let up = scale * (THUMB + 2.0 * GAP) * (count - 1 - index) as f32;

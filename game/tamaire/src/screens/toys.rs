@@ -13,6 +13,7 @@ use egui::{
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::scene::Form;
 use std::f32::consts::TAU;
+use tamaire_play::Assist;
 use tamaire_play::playground::{Change, Stuff, Tool};
 use tamaire_sound::Menu;
 
@@ -38,14 +39,19 @@ enum Toy {
 }
 
 impl Toy {
-    /// All buttons, in order.
-    fn all() -> impl Iterator<Item = Self> {
+    /// Returns all buttons, in order. In a level in which nothing tears there is no knife.
+    fn all(game: &Game) -> Vec<Self> {
+        let assists = &game.bout.round().level().game().assists;
+        let can_cut = !assists.contains(&Assist::Unbreakable);
+        let tools = TOOLS
+            .into_iter()
+            .filter(|&tool| can_cut || tool != Tool::Knife);
         let stuffs = Stuff::ALL.map(Self::Stuff).into_iter();
-        let others = [Self::Sliders, Self::Clear];
         stuffs
             .chain(FORMS.map(Self::Form))
-            .chain(TOOLS.map(Self::Tool))
-            .chain(others)
+            .chain(tools.map(Self::Tool))
+            .chain([Self::Sliders, Self::Clear])
+            .collect()
     }
 
     fn name(self, game: &Game) -> String {
@@ -79,9 +85,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     }
     draw_tool(game, ui.painter());
     let scale = hud::scale(game, ui);
-    let places = places(ui.max_rect(), scale);
+    let places = places(Toy::all(game).len(), ui.max_rect(), scale);
     let mut is_over = false;
-    for (toy, rect) in Toy::all().zip(places) {
+    for (toy, rect) in Toy::all(game).into_iter().zip(places) {
         game.controls.covers.push(rect);
         let response = ui.interact(rect, ui.scope_id().with(toy.name(game)), Sense::CLICK);
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, toy.name(game)));
@@ -95,8 +101,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     if game.bout.toys.has_sliders {
         is_over |= sliders(game, ui, scale);
     }
-    let covers = &game.controls.covers;
-    let is_free = |at: Pos2| !covers.iter().any(|cover| cover.contains(at));
+    let controls = &game.controls;
+    let buttons = controls.buttons.iter().map(|button| button.rect);
+    let taken: Vec<Rect> = buttons.chain(controls.covers.iter().copied()).collect();
+    let is_free = |at: Pos2| !taken.iter().any(|rect| rect.contains(at));
     game.bout.toys.is_pointer_down = ui.input(|input| {
         let pointer = &input.pointer;
         pointer.primary_down() && pointer.press_origin().is_some_and(is_free)
@@ -110,15 +118,14 @@ pub(super) fn height(game: &Game, ui: &Ui) -> f32 {
         return 0.0;
     }
     let (screen, scale) = (ui.max_rect(), hud::scale(game, ui));
-    let top = places(screen, scale).map(|place| place.top());
+    let top = places(Toy::all(game).len(), screen, scale).map(|place| place.top());
     screen.bottom() - top.fold(screen.bottom(), f32::min)
 }
 
-/// Returns the places of the buttons: in rows at the lower edge, the last row lowest.
-fn places(screen: Rect, scale: f32) -> impl Iterator<Item = Rect> {
+/// Returns the places of `count` buttons: in rows at the lower edge, the last row lowest.
+fn places(count: usize, screen: Rect, scale: f32) -> impl Iterator<Item = Rect> {
     let side = scale * HIGH;
     let step = side + scale * 0.6 * GAP;
-    let count = Toy::all().count();
     let columns = (((screen.width() - 2.0 * EDGE) / step) as usize).clamp(1, count);
     let rows = count.div_ceil(columns);
     // Rows of about the same length.

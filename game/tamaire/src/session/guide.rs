@@ -10,7 +10,7 @@ const REST: f32 = 1.0;
 /// Number of times that the ghost shows the move.
 const TIMES: u32 = 2;
 
-/// Round in which a ghost plays the first move of a level, some times over.
+/// Round in which a ghost plays the first move of a level, [`TIMES`] times.
 pub(super) struct Guide {
     round: AnyRound,
     /// Number of times that the move has been shown.
@@ -40,11 +40,14 @@ impl Guide {
         let end = path.last().map_or(0.0, |end| end[0]);
         if seconds(&self.round) > end + REST {
             self.shown += 1;
+            if self.shown == TIMES {
+                return false;
+            }
             self.round = AnyRound::new(level.clone());
         }
         let target = point_at(path, seconds(&self.round));
         self.round.step(InputFrame::towards(Vec3::from(target)));
-        self.shown < TIMES
+        true
     }
 }
 

@@ -56,8 +56,8 @@ pub(super) const WORDS: Words = Words {
             (None, Some(most)) => Some(format!("at most {most} pieces")),
         });
         parts.extend(wish.joints.map(|joints| match joints {
-            Joints::Whole => "let no rope break".to_string(),
-            Joints::Broken => "break a rope".to_string(),
+            Joints::Whole => "let no link break".to_string(),
+            Joints::Broken => "break a link".to_string(),
         }));
         if !wish.whole.is_empty() {
             parts.push("let the fragile one stay whole".to_string());
@@ -136,7 +136,7 @@ pub(super) const WORDS: Words = Words {
     scanning: "One-switch scanning",
     how_by_switch: "Press the switch to do what the arrow shows",
     calm: "Calm mode: nothing tears, faces stay happy",
-    not_in_calm: "Things must tear here: not in calm mode.",
+    not_in_calm: "Something has to tear in this level, so it is closed in calm mode.",
     assists_section: "Easier play (from the next round)",
     assist: |assist| match assist {
         Assist::WiderBasket => "Wider basket",
@@ -323,8 +323,8 @@ pub(super) const WORDS: Words = Words {
             (None, Some(most)) => Some(format!("≤ {most} pieces")),
         });
         parts.extend(wish.joints.map(|joints| match joints {
-            Joints::Whole => "rope whole".to_string(),
-            Joints::Broken => "rope broken".to_string(),
+            Joints::Whole => "links whole".to_string(),
+            Joints::Broken => "link broken".to_string(),
         }));
         if !wish.whole.is_empty() {
             parts.push("fragile".to_string());
@@ -357,8 +357,8 @@ pub(super) const WORDS: Words = Words {
                 .max_pieces
                 .map(|_| format!("{} pieces", outcome.pieces)),
             missed.joints.map(|joints| match joints {
-                Joints::Whole => "a rope broke".to_string(),
-                Joints::Broken => "no rope broke".to_string(),
+                Joints::Whole => "a link broke".to_string(),
+                Joints::Broken => "no link broke".to_string(),
             }),
             (!missed.whole.is_empty()).then(|| "it broke".to_string()),
             missed.inside.map(|least| {
@@ -416,7 +416,7 @@ pub(super) const WORDS: Words = Words {
             "The body is made of blocks: small at the rim, large inside. Where it tears, small ones replace large ones."
         }
         ElementColour::Strain => {
-            "Pale is at rest, red is strained. It tears where the strain is too great."
+            "Blue is at rest, yellow is strained. It tears where the strain is too great."
         }
     },
     stuff: |stuff| match stuff {

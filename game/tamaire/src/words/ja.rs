@@ -58,8 +58,8 @@ pub(super) const WORDS: Words = Words {
             (None, Some(most)) => Some(format!("{most}こまで")),
         });
         parts.extend(wish.joints.map(|joints| match joints {
-            Joints::Whole => "ひもを切らない".to_string(),
-            Joints::Broken => "ひもを切る".to_string(),
+            Joints::Whole => "つなぎ目を切らない".to_string(),
+            Joints::Broken => "つなぎ目を切る".to_string(),
         }));
         if !wish.whole.is_empty() {
             parts.push("こわれものを こわさない".to_string());
@@ -324,8 +324,8 @@ pub(super) const WORDS: Words = Words {
             (None, Some(most)) => Some(format!("{most}こまで")),
         });
         parts.extend(wish.joints.map(|joints| match joints {
-            Joints::Whole => "ひもを切らない".to_string(),
-            Joints::Broken => "ひもを切る".to_string(),
+            Joints::Whole => "つなぎ目を切らない".to_string(),
+            Joints::Broken => "つなぎ目を切る".to_string(),
         }));
         if !wish.whole.is_empty() {
             parts.push("こわれものを こわさない".to_string());
@@ -352,8 +352,8 @@ pub(super) const WORDS: Words = Words {
                 .map(|_| format!("{}％だった", percent_below(outcome.kept))),
             { missed.pieces.or(missed.max_pieces) }.map(|_| format!("{}こだった", outcome.pieces)),
             missed.joints.map(|joints| match joints {
-                Joints::Whole => "ひもが切れた".to_string(),
-                Joints::Broken => "ひもは切れなかった".to_string(),
+                Joints::Whole => "つなぎ目が切れた".to_string(),
+                Joints::Broken => "つなぎ目は切れなかった".to_string(),
             }),
             (!missed.whole.is_empty()).then(|| "こわれた".to_string()),
             { missed.inside }.map(|_| format!("{}％だった", percent_below(outcome.inside))),
@@ -418,7 +418,7 @@ pub(super) const WORDS: Words = Words {
             "体は ブロックで できている。ふちは ちいさく、なかは おおきい。ちぎれる ところは、ちいさな ブロックに かわる。"
         }
         ElementColour::Strain => {
-            "しろっぽい ところは らく、あかい ところは ひっぱられている。むりが かかりすぎると ちぎれる。"
+            "あおい ところは らく、きいろい ところは ひっぱられている。むりが かかりすぎると ちぎれる。"
         }
     },
     stuff: |stuff| match stuff {

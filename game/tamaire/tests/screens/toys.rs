@@ -53,6 +53,33 @@ fn pressing_uses_the_tool_but_not_on_a_button() {
     window.drop_at(pos2(500.0, 200.0));
     frames(&mut window, 3);
     assert_eq!(presses(&mut window), 2);
+    // A button of the round is no place for the tool, either.
+    let again = window.get_by_label("Rewind").rect().center();
+    window.drag_at(again);
+    frames(&mut window, 3);
+    window.drop_at(again);
+    frames(&mut window, 3);
+    assert!(presses(&mut window) <= 2);
+}
+
+#[test]
+fn tools_follow_when_time_runs_back() {
+    let mut window = open(Files::nowhere(), vec2(1000.0, 640.0), 1.0);
+    start(&mut window, "sandbox");
+    frames(&mut window, 40);
+    window.get_by_label("Knife: press and hold").click();
+    frames(&mut window, 20);
+    game(&mut window).change_playground(Change::Gravity(30));
+    frames(&mut window, 5);
+    assert_eq!(game(&mut window).bout.toys.tool, Tool::Knife);
+    let rewind = window.get_by_label("Rewind").rect().center();
+    window.drag_at(rewind);
+    frames(&mut window, 50);
+    window.drop_at(rewind);
+    frames(&mut window, 3);
+    let toys = game(&mut window).bout.toys;
+    assert_eq!(toys.tool, Tool::Push);
+    assert!(toys.gravity < 2.0, "{}", toys.gravity);
 }
 
 #[test]

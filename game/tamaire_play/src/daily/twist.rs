@@ -128,7 +128,8 @@ impl Twist {
             }
             Self::Soap => {
                 scene.material = materials(&|material: &mut MaterialText| {
-                    material.friction = Some(0.02);
+                    let friction = material.friction.unwrap_or(usual.friction);
+                    material.friction = Some(friction.min(0.02));
                 });
                 for obstacle in &mut scene.obstacle {
                     obstacle.friction = obstacle.friction.min(0.02);

@@ -287,3 +287,92 @@ fn changes_come_back_when_time_runs_back_and_are_in_the_replay() {
         verify(&round);
     }
 }
+
+#[test]
+fn changes_in_a_level_with_a_basket_or_too_many_at_once_are_no_replay() {
+    let mut round = begin("sandbox");
+    for _ in 0..40 {
+        // More than the limit is refused.
+        let _made = round.change(Change::Press(false));
+    }
+    assert_eq!(round.changes().len(), 32);
+    assert_eq!(round.change(Change::Clear), Err(ChangeError::TooMany));
+    wait(&mut round, 5);
+    verify(&round);
+    let genuine = round.replay();
+    let refused = |replay: &Replay| Replay::read(&replay.text()).unwrap_err().to_string();
+
+    let mut crowded = genuine.clone();
+    crowded.changes.push(crowded.changes[0]);
+    assert!(refused(&crowded).contains("expected at most 32 between two ticks"));
+
+    let mut classic = begin("classic");
+    wait(&mut classic, 5);
+    let mut forged = classic.replay();
+    forged.changes = genuine.changes;
+    assert!(refused(&forged).contains("expected none in a level with a basket"));
+}
+
+#[test]
+fn cleared_room_has_space_at_once() {
+    let mut round = begin("sandbox");
+    let add = |round: &mut AnyRound| round.change(Change::add(Form::Box, Stuff::Stone, Vec3::ZERO));
+    while add(&mut round).is_ok() {
+        wait(&mut round, 1);
+    }
+    round.change(Change::Clear).unwrap();
+    add(&mut round).unwrap();
+    wait(&mut round, 1);
+    assert_eq!(bodies(&round), 1);
+}
+
+#[test]
+fn nothing_tears_in_an_unbreakable_playground() {
+    let level = Level::open("sandbox").unwrap();
+    let level = level
+        .assisted(&[tamaire_play::Assist::Unbreakable].into())
+        .unwrap();
+    let mut round = AnyRound::new(Arc::new(level));
+    let at = middle(&round);
+    for change in [
+        Change::Clear,
+        Change::Gravity(0),
+        Change::add(Form::Ball, Stuff::Biscuit, at),
+    ] {
+        round.change(change).unwrap();
+    }
+    round.change(Change::Tool(Tool::Knife)).unwrap();
+    go(&mut round, at - 0.45 * Vec3::X, 120);
+    round.change(Change::Press(true)).unwrap();
+    go(&mut round, at + 0.45 * Vec3::X, 60);
+    round.change(Change::Tool(Tool::Push)).unwrap();
+    for k in 0..60 {
+        go(&mut round, at + [-0.5, 0.5][k % 2] * Vec3::X, 15);
+    }
+    assert_eq!(round.progress().pieces, 1);
+}
+
+#[test]
+fn first_player_stays_first_when_the_hand_grows() {
+    let mut round = begin("sandbox");
+    round.change(Change::HandSize(20)).unwrap();
+    let both = |round: &AnyRound| {
+        let starts = [0, 1].map(|player| round.start(player));
+        InputFrame::towards(starts[0]).with(1, starts[1])
+    };
+    let frame = both(&round);
+    round.step(frame);
+    round.change(Change::HandSize(5)).unwrap();
+    round.step(frame);
+    let AnyRound::Plane(plane) = &round else {
+        panic!("the level is in 2D");
+    };
+    let shown: Vec<f32> = fuwafuwa::inspect::hands(plane.world())
+        .map(|(_, hand)| hand.local_shape().inradius())
+        .collect();
+    assert_eq!(shown.len(), 2);
+    assert!(
+        (shown[0] - 0.05).abs() < 1e-6 && shown[1] > 0.06,
+        "{shown:?}"
+    );
+}

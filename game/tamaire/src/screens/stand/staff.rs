@@ -332,7 +332,10 @@ fn hours(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<Option<(Time, Time)>
 /// Shows the levels of the stand. A press adds or removes a level.
 fn levels(stand: &Stand, game: &Game, ui: &mut Ui) -> Option<ConfigChange> {
     let theme = game.theme();
+    // A chosen level replaces chapters.
+    let has_levels = stand.config.chapters.0.is_empty();
     let chosen: Vec<&str> = { stand.config.levels.0.iter() }
+        .filter(|_| has_levels)
         .map(|level| level.id.as_str())
         .collect();
     let mut changed = None;
