@@ -91,10 +91,10 @@ pub enum Lock {
 /// Part of the list of levels.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Section {
-    /// The level of the day.
-    Day,
     /// The classic level and the playgrounds.
     First,
+    /// The level of the day.
+    Day,
     /// Chapter of the path, counted from 1.
     Chapter(usize),
     /// The other built-in levels.
@@ -107,7 +107,7 @@ impl Section {
     /// All sections, in order.
     pub fn all() -> impl Iterator<Item = Self> {
         let chapters = (1..=CHAPTERS.len()).map(Self::Chapter);
-        [Self::Day, Self::First]
+        [Self::First, Self::Day]
             .into_iter()
             .chain(chapters)
             .chain([Self::More, Self::Own])

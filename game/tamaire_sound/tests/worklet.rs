@@ -16,6 +16,7 @@ const SOUNDSCAPE: Soundscape = Soundscape {
     hold: 0.7,
     rewind: false,
     music: true,
+    song: 0,
     hush: tamaire_sound::Mute::Nothing,
 };
 

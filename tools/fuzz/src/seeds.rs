@@ -18,6 +18,7 @@ use png::{BitDepth, ColorType};
 use std::io::{Cursor, Write};
 use std::sync::Arc;
 use tamaire_play::level::built_in;
+use tamaire_play::playground::{self, Change, Stuff};
 use tamaire_play::{AnyRound, InputFrame, Level, Replay};
 
 pub const CAT: &[u8] = include_bytes!("../../../game/tamaire_play/levels/cat.png");
@@ -115,6 +116,28 @@ fn sent(link: &str) -> Vec<u8> {
     [&link.as_bytes()[..1], &bytes[4..]].concat()
 }
 
+/// Returns a round in a playground with a change of each kind.
+fn with_changes(level: Level) -> Replay {
+    let mut round = AnyRound::new(Arc::new(level));
+    let changes = [
+        Change::Clear,
+        Change::Gravity(4),
+        Change::Air(10),
+        Change::HandSize(8),
+        Change::add(scene::Form::Ball, Stuff::Clay, Vec3::ZERO),
+        Change::Tool(playground::Tool::Knife),
+        Change::Press(true),
+    ];
+    for change in changes {
+        round.change(change).expect("the room is not full");
+        for tick in 0..9 {
+            let away = 0.02 * tick as f32;
+            round.step(InputFrame::towards(Vec3::new(away, 0.0, 0.0)));
+        }
+    }
+    round.replay()
+}
+
 fn small_rounds() -> Vec<Replay> {
     let played = |level: Level| {
         let mut round = AnyRound::new(Arc::new(level));
@@ -126,10 +149,18 @@ fn small_rounds() -> Vec<Replay> {
         round.replay()
     };
     let few = ["classic", "twins", "donut", "classic-3d"];
-    let levels = small_levels().into_iter();
-    levels
-        .filter(|level| few.contains(&level.id.as_str()))
+    let playgrounds = ["sandbox", "sandbox-3d"];
+    let [played_levels, playground_levels] = [&few[..], &playgrounds[..]].map(|names| {
+        let levels = small_levels().into_iter();
+        levels
+            .filter(|level| names.contains(&level.id.as_str()))
+            .collect::<Vec<_>>()
+    });
+    let changed = playground_levels.into_iter().map(with_changes);
+    played_levels
+        .into_iter()
         .map(played)
+        .chain(changed)
         .collect()
 }
 
@@ -248,8 +279,9 @@ pub fn small_levels() -> Vec<Level> {
             return level;
         }
         let scene = Scene::read(id, text, &[format!("body.n={FEW}")]);
-        Level::from_scene(id, scene.expect("a built-in scene or level"))
-            .expect("a smaller body is valid")
+        let scene = scene.expect("a built-in scene or level");
+        // A body too thin for so few voxels keeps its own number.
+        Level::from_scene(id, scene).unwrap_or(level)
     };
     built_in().map(small).collect()
 }

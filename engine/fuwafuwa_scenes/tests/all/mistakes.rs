@@ -484,7 +484,7 @@ fn build_limits_length_of_lists() {
         (
             "dim = 2\n[game]\nname = { en = \"a\" }\nhint = [[1.0, 0.0, 0.0, 0.0], [0.5, 0.0, 0.0, 0.0]]\n"
                 .into(),
-            "game, hint.2: expected a time of 1 s or more, found 0.5",
+            "game, hint 2: expected a time of 1 s or more, found 0.5",
         ),
     ] {
         let scene = Scene::read("toy.toml", &text, &[]).unwrap();

@@ -4,7 +4,9 @@ use super::confetti::Confetti;
 use super::feelings::{Feeling, MoodInput, largest_mass};
 use app_shell::CameraRig;
 use fuwafuwa::inspect::is_hand;
-use fuwafuwa::{Contact, Dim, DimVector, Event, NodeId, ObjectRef, SoftBody, Vec3, VoxelGrid};
+use fuwafuwa::{
+    Contact, Dim, DimVector, Event, NodeId, ObjectRef, SoftBody, SoftBodyHandle, Vec3, VoxelGrid,
+};
 use tamaire_play::{AnyRound, Basket, Round};
 
 /// Maximum number of particles.
@@ -69,6 +71,8 @@ pub struct Effects {
     pub confetti: Confetti,
     /// Feeling of each body (expression and position of its drawn face), in the order of the world's bodies.
     pub feelings: Vec<Feeling>,
+    /// The bodies, in the same order.
+    bodies: Vec<SoftBodyHandle>,
     /// Mass of each body's largest piece at the start of a replay that was wound [kg]. Otherwise empty.
     start_masses: Vec<f32>,
     /// Contact force between hands and each body [N], smoothed over some ticks.
@@ -98,6 +102,7 @@ impl Default for Effects {
             specks: Vec::new(),
             confetti: Confetti::default(),
             feelings: Vec::new(),
+            bodies: Vec::new(),
             start_masses: Vec::new(),
             pressures: Vec::new(),
             hint: 0.0,
@@ -135,11 +140,36 @@ impl Effects {
         }
     }
 
+    /// Adapts to bodies that were added or removed in a playground. The others keep their feelings.
+    fn follow_bodies<D: Dim>(
+        &mut self,
+        round: &Round<D>,
+        camera: &CameraRig,
+        handles: Vec<SoftBodyHandle>,
+    ) {
+        let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
+        let known = |handle: &SoftBodyHandle| self.bodies.iter().position(|known| known == handle);
+        let known: Vec<Option<usize>> = handles.iter().map(known).collect();
+        let bodies = known.iter().zip(&handles).enumerate();
+        let feelings = bodies.map(|(place, (known, &handle))| match known {
+            Some(index) => self.feelings[*index].clone(),
+            None => Feeling::new(&round.world()[handle], eye, round.level().is_drawing(place)),
+        });
+        self.feelings = feelings.collect();
+        let pressures = known
+            .iter()
+            .map(|known| known.map_or(0.0, |index| self.pressures[index]));
+        self.pressures = pressures.collect();
+        self.bodies = handles;
+    }
+
     fn look_at<D: Dim>(&mut self, round: &Round<D>, camera: &mut CameraRig, still: bool) {
         let world = round.world();
         let bodies = world.soft_bodies();
-        if world.ticks() <= self.tick || self.feelings.len() != bodies.clone().count() {
-            // A new round has begun, so all effects restart.
+        let handles: Vec<SoftBodyHandle> = bodies.clone().map(|(body, _)| body).collect();
+        let is_new = world.ticks() <= self.tick || self.bodies.is_empty();
+        if is_new {
+            // A new round has begun, or time runs back, so all effects restart.
             let eye = (D::N == 3).then(|| camera.eye(round.level().arena()));
             let masses = std::mem::take(&mut self.start_masses);
             let mut masses = masses.into_iter();
@@ -153,13 +183,16 @@ impl Effects {
             *self = Self {
                 pressures: vec![0.0; bodies.clone().count()],
                 feelings: bodies.enumerate().map(feeling).collect(),
-                gravity: Vec3::from(round.level().scene().gravity),
                 room: round.level().arena(),
                 axes: D::N,
                 reminder: self.reminder,
+                bodies: handles,
                 ..Self::default()
             };
+        } else if handles != self.bodies {
+            self.follow_bodies(round, camera, handles);
         }
+        self.gravity = world.config().gravity.to_vec3();
         self.tick = world.ticks();
         let mut pressed = vec![0.0f32; self.feelings.len()];
         let mut material = 1;

@@ -331,8 +331,9 @@ fn font_contains_all_characters_of_the_game() {
         include_str!("../../src/words/en.rs"),
         include_str!("../../src/words/ja.rs"),
         include_str!("../../src/words/stand.rs"),
+        include_str!("../../../tamaire_play/src/daily/twist.rs"),
     ];
-    texts.extend(tamaire_play::level::NAMED.map(|(_, text)| text));
+    texts.extend(tamaire_play::level::built_in().map(|(_, text)| text));
     let font = egui::FontId::proportional(20.0);
     for letter in texts.join("").chars().filter(|k| !k.is_control()) {
         let is_there = window.ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter));

@@ -19,24 +19,28 @@ fn run_back_to(rewind: &mut Rewind, round: &mut AnyRound, tick: u64) {
     rewind.end();
 }
 
-/// Plays on with a bot, and notes the hash after each tick.
+/// Plays on with a bot, and notes the hash after each tick. Returns the largest step of
+/// the plans on the way.
 fn play(
     round: &mut AnyRound,
     rewind: &mut Rewind,
     hashes: &mut Vec<u64>,
     ticks: u64,
     frame: &mut dyn FnMut(&mut AnyRound) -> InputFrame,
-) {
+) -> u64 {
+    let mut step = rewind.stride();
     for _ in 0..ticks {
         if round.progress().outcome.is_some() {
-            return;
+            break;
         }
         let frame = frame(round);
         round.step(frame);
         rewind.note(round);
+        step = step.max(rewind.stride());
         hashes.truncate(round.ticks() as usize);
         hashes.push(round.hash());
     }
+    step
 }
 
 /// Verifies that a replay of the round plays to the same end.
@@ -68,7 +72,7 @@ fn rewind_at_random(id: &str, kind: BotKind, seed: u64, most: usize) -> usize {
         };
         let ticks = random.u64(1..ticks);
         let mut ask = |round: &mut AnyRound| round.ask(&mut bot);
-        play(&mut round, &mut rewind, &mut hashes, ticks, &mut ask);
+        step = step.max(play(&mut round, &mut rewind, &mut hashes, ticks, &mut ask));
         if round.progress().outcome.is_some() {
             break;
         }
@@ -77,7 +81,6 @@ fn rewind_at_random(id: &str, kind: BotKind, seed: u64, most: usize) -> usize {
         run_back_to(&mut rewind, &mut round, goal);
         let tick = round.ticks();
         // Copies may still lie as far apart as in an earlier plan.
-        step = step.max(rewind.stride());
         assert!(
             tick <= now && (tick + step > goal),
             "{id}: {now} to {goal}, {tick}"
