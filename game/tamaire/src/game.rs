@@ -291,7 +291,7 @@ impl Game {
     /// Returns why the level with this index in [`Self::levels`] is closed; `None` if it is open.
     pub fn lock_of_level(&self, index: usize) -> Option<Lock> {
         let level = &self.levels[index];
-        let must_tear = self.settings.calm && level.game().ignores(Assist::Unbreakable);
+        let must_tear = self.settings.calm && level.must_tear();
         let section = self.section_of(index);
         must_tear
             .then_some(Lock::Calm)

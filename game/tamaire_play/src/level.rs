@@ -6,9 +6,9 @@ mod room;
 
 pub use path::{CHAPTERS, Chapter, OPENING_SHARE, PATH, PathLevel};
 
-use crate::Route;
 use crate::round::start_targets;
 use crate::rules::Basket;
+use crate::{Assist, Route};
 use frame::BodySize;
 use fuwafuwa::inspect::Hash;
 use fuwafuwa::{Dim, Dim2, Dim3, Vec3, VoxelGrid, World};
@@ -362,6 +362,12 @@ impl Level {
             [] => self.possible_routes(),
             stated => stated,
         }
+    }
+
+    /// Returns whether the level can be won only if something tears.
+    pub fn must_tear(&self) -> bool {
+        let is_shaved_only = !self.routes().is_empty() && !self.routes().contains(&Route::Squeeze);
+        self.game.ignores(Assist::Unbreakable) || is_shaved_only
     }
 
     /// Returns the routes that the basket and the materials allow. `Mix` is not listed as a route of its own.

@@ -57,15 +57,10 @@ impl Stuff {
         Self::Stone,
     ];
 
-    /// Returns the colour: red, green and blue, 0 to 255 (sRGB).
-    pub fn colour(self) -> [u8; 3] {
-        match self {
-            Self::Jelly => [244, 130, 116],
-            Self::Rubber => [240, 180, 60],
-            Self::Biscuit => [206, 150, 92],
-            Self::Clay => [116, 176, 140],
-            Self::Stone => [140, 150, 168],
-        }
+    /// Returns the number of the material in added bodies, which decides their colour.
+    pub fn number(self) -> u8 {
+        let place = Self::ALL.iter().position(|known| *known == self);
+        1 + place.expect("every material is listed") as u8
     }
 
     /// Returns the table of the material in a scene file. It is unbreakable if its nature or the level says so.
@@ -378,8 +373,7 @@ impl<D: Dim> Round<D> {
         let materials = Stuff::ALL.map(material).concat();
         let invalid = |error: &dyn std::fmt::Display| ChangeError::Invalid(error.to_string());
         let form = toml::Value::try_from(form).map_err(|error| invalid(&error))?;
-        let place = Stuff::ALL.iter().position(|known| *known == stuff);
-        let number = 1 + place.expect("every material is listed");
+        let number = stuff.number();
         let text = format!(
             "dim = {}\n{materials}[[body]]\nshape = {form}\nn = {}\nwidth = {WIDTH}\nmaterial = {number}\nat = {at:?}\n",
             D::N,

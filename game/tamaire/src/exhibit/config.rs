@@ -360,7 +360,7 @@ impl Levels {
     /// # Errors
     /// A text that names a level in which things must tear, or tells that no level is left.
     fn calmed(&self, leaves_out: bool) -> Result<Self, String> {
-        let must_tear = |level: &&Arc<Level>| level.game().ignores(Assist::Unbreakable);
+        let must_tear = |level: &&Arc<Level>| level.must_tear();
         if let Some(level) = self.0.iter().find(must_tear).filter(|_| !leaves_out) {
             let id = &level.id;
             return Err(format!(

@@ -25,7 +25,7 @@ const TOOLS: [Tool; 4] = [Tool::Push, Tool::Grab, Tool::Knife, Tool::Pin];
 const BELOW_TOP: f32 = 0.35;
 /// Width of the card with the sliders [points].
 const CARD: f32 = 420.0;
-/// Height of the card with the sliders [points].
+/// Height of the card with the sliders in its first frame [points].
 const CARD_HIGH: f32 = 250.0;
 
 /// A button of the playground.
@@ -179,7 +179,10 @@ fn sliders(game: &mut Game, ui: &mut Ui, scale: f32) -> bool {
     let (theme, said, screen) = (game.theme(), game.words(), ui.max_rect());
     let width = CARD.min(screen.width() - 2.0 * EDGE);
     let low = screen.bottom() - height(game, ui) - scale * GAP;
-    let size = vec2(width, CARD_HIGH);
+    // The height of the card is known from the frame before.
+    let id = egui::Id::unique("height of the sliders");
+    let high = ui.data(|data| data.get_temp(id)).unwrap_or(CARD_HIGH);
+    let size = vec2(width, high);
     let place = Rect::from_min_size(pos2(screen.center().x - 0.5 * width, low - size.y), size);
     let mut toys = game.bout.toys;
     let shown = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
@@ -197,6 +200,7 @@ fn sliders(game: &mut Game, ui: &mut Ui, scale: f32) -> bool {
         ui.min_rect()
     });
     game.controls.covers.push(shown.inner);
+    ui.data_mut(|data| data.insert_temp(id, shown.inner.height()));
     let before = std::mem::replace(&mut game.bout.toys, toys);
     let unit = |value: f32, step: f32| (value / step).round() as u8;
     let changes = [
@@ -233,23 +237,29 @@ fn draw(game: &Game, painter: &Painter, toy: Toy, rect: Rect, is_hovered: bool) 
     let scale = rect.width() / HIGH;
     match toy {
         Toy::Stuff(stuff) => {
-            painter.circle_filled(middle, 12.0 * scale, colour(stuff));
+            painter.circle_filled(middle, 12.0 * scale, colour(game, stuff));
             painter.circle_stroke(middle, 12.0 * scale, Stroke::new(1.5, theme.ink));
         }
-        Toy::Form(form) => draw_form(painter, &theme, form, middle, scale, game.bout.toys.stuff),
+        Toy::Form(form) => {
+            let fill = colour(game, game.bout.toys.stuff);
+            draw_form(painter, &theme, form, middle, scale, fill);
+        }
         Toy::Tool(tool) => draw_tool_icon(painter, tool, middle, scale, theme.ink),
         Toy::Sliders => icons::sliders(painter, middle, scale, theme.ink),
         Toy::Clear => icons::broom(painter, middle, scale, theme.ink),
     }
 }
 
-fn colour(stuff: Stuff) -> Color32 {
-    let [red, green, blue] = stuff.colour();
+/// Returns the colour in which bodies of a material are drawn.
+fn colour(game: &Game, stuff: Stuff) -> Color32 {
+    let own = game.bout.round().level().colours();
+    let colour = game.theme().world.tinted_material(stuff.number(), own);
+    let [red, green, blue] = colour.map(|channel| (255.0 * channel).round() as u8);
     Color32::from_rgb(red, green, blue)
 }
 
-fn draw_form(painter: &Painter, theme: &Theme, form: Form, at: Pos2, scale: f32, stuff: Stuff) {
-    let (fill, line) = (colour(stuff), Stroke::new(1.5, theme.ink));
+fn draw_form(painter: &Painter, theme: &Theme, form: Form, at: Pos2, scale: f32, fill: Color32) {
+    let line = Stroke::new(1.5, theme.ink);
     let outline = |radius: &dyn Fn(f32) -> Vec2| {
         let points = (0..48).map(|k| at + scale * radius(TAU * k as f32 / 48.0));
         points.collect::<Vec<Pos2>>()

@@ -56,8 +56,8 @@ pub(super) const WORDS: Words = Words {
             (None, Some(most)) => Some(format!("at most {most} pieces")),
         });
         parts.extend(wish.joints.map(|joints| match joints {
-            Joints::Whole => "let no link break".to_string(),
-            Joints::Broken => "break a link".to_string(),
+            Joints::Whole => "let no joint break".to_string(),
+            Joints::Broken => "break a joint".to_string(),
         }));
         if !wish.whole.is_empty() {
             parts.push("let the fragile one stay whole".to_string());
@@ -323,8 +323,8 @@ pub(super) const WORDS: Words = Words {
             (None, Some(most)) => Some(format!("≤ {most} pieces")),
         });
         parts.extend(wish.joints.map(|joints| match joints {
-            Joints::Whole => "links whole".to_string(),
-            Joints::Broken => "link broken".to_string(),
+            Joints::Whole => "joints whole".to_string(),
+            Joints::Broken => "joint broken".to_string(),
         }));
         if !wish.whole.is_empty() {
             parts.push("fragile".to_string());
@@ -357,8 +357,8 @@ pub(super) const WORDS: Words = Words {
                 .max_pieces
                 .map(|_| format!("{} pieces", outcome.pieces)),
             missed.joints.map(|joints| match joints {
-                Joints::Whole => "a link broke".to_string(),
-                Joints::Broken => "no link broke".to_string(),
+                Joints::Whole => "a joint broke".to_string(),
+                Joints::Broken => "no joint broke".to_string(),
             }),
             (!missed.whole.is_empty()).then(|| "it broke".to_string()),
             missed.inside.map(|least| {
