@@ -62,11 +62,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
         rect: place,
     };
     game.controls.buttons.push(touched);
-    let response = ui
-        .scope_builder(UiBuilder::new().max_rect(place), |ui| {
-            button(ui, &theme, said.again, BUTTON, ButtonStyle::Other)
-        })
-        .inner;
+    // A scope would make the whole screen count as hovered, so that the mouse would not move the hand.
+    let mut child = ui.new_child(UiBuilder::new().max_rect(place));
+    let response = button(&mut child, &theme, said.again, BUTTON, ButtonStyle::Other);
     if response.clicked() {
         game.act(Action::Retry, touched.seat());
     }

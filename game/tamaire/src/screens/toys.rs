@@ -185,22 +185,22 @@ fn sliders(game: &mut Game, ui: &mut Ui, scale: f32) -> bool {
     let size = vec2(width, high);
     let place = Rect::from_min_size(pos2(screen.center().x - 0.5 * width, low - size.y), size);
     let mut toys = game.bout.toys;
-    let shown = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
-        card(ui, &theme, |ui| {
-            ui.set_width(ui.available_width());
-            let mut show = |name: &str, value: &mut f32, range: [f32; 3], digits: usize| {
-                slider_with(ui, &theme, name, value, range, |value| {
-                    format!("{value:.digits$}")
-                });
-            };
-            show(said.gravity, &mut toys.gravity, [0.0, 20.0, 0.5], 1);
-            show(said.air, &mut toys.air, [0.0, 5.0, 0.1], 1);
-            show(said.hand_size, &mut toys.hand, [3.0, 30.0, 1.0], 0);
-        });
-        ui.min_rect()
+    // A scope would make the whole screen count as hovered, so that the mouse would not move the hand.
+    let mut child = ui.new_child(UiBuilder::new().max_rect(place));
+    card(&mut child, &theme, |ui| {
+        ui.set_width(ui.available_width());
+        let mut show = |name: &str, value: &mut f32, range: [f32; 3], digits: usize| {
+            slider_with(ui, &theme, name, value, range, |value| {
+                format!("{value:.digits$}")
+            });
+        };
+        show(said.gravity, &mut toys.gravity, [0.0, 20.0, 0.5], 1);
+        show(said.air, &mut toys.air, [0.0, 5.0, 0.1], 1);
+        show(said.hand_size, &mut toys.hand, [3.0, 30.0, 1.0], 0);
     });
-    game.controls.covers.push(shown.inner);
-    ui.data_mut(|data| data.insert_temp(id, shown.inner.height()));
+    let shown = child.min_rect();
+    game.controls.covers.push(shown);
+    ui.data_mut(|data| data.insert_temp(id, shown.height()));
     let before = std::mem::replace(&mut game.bout.toys, toys);
     let unit = |value: f32, step: f32| (value / step).round() as u8;
     let changes = [
@@ -217,7 +217,7 @@ fn sliders(game: &mut Game, ui: &mut Ui, scale: f32) -> bool {
     for (_, change) in changes.into_iter().filter(|(is_changed, _)| *is_changed) {
         game.change_playground(change);
     }
-    ui.rect_contains_pointer(shown.inner)
+    ui.rect_contains_pointer(shown)
 }
 
 /// Draws a button.

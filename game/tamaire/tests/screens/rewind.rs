@@ -1,10 +1,10 @@
 //! Time that runs back: by key, by a button on the screen, by touch and with one switch.
 
 use crate::window::*;
-use egui::{Key, PointerButton, TouchPhase};
+use egui::{Key, PointerButton, TouchPhase, vec2};
 use egui_kittest::kittest::Queryable;
 use force_feedback::Stop;
-use fuwafuwa::DEFAULT_TICK;
+use fuwafuwa::{DEFAULT_TICK, Vec3};
 use std::collections::BTreeMap;
 use tamaire::game::Screen;
 use tamaire::input::Action;
@@ -106,4 +106,36 @@ fn a_win_after_a_rewind_is_kept_apart() {
     let record = window.state().game.records.of("classic").unwrap();
     assert!(record.best.is_empty() && !record.best_rewound.is_empty());
     window.get_by_label_contains("with rewind");
+}
+
+#[test]
+fn hand_follows_the_mouse_in_a_round_that_cannot_be_won() {
+    let mut window = open(Files::nowhere(), vec2(1280.0, 800.0), 1.0);
+    start(&mut window, "spoon-race");
+    frames(&mut window, 2);
+    let view = game(&mut window).bout.view.unwrap();
+    let at = |x: f32, y: f32| view.to_screen(Vec3::new(x, y, 0.0));
+    // Picks the spoon up and swings it, so that the egg breaks.
+    let hand = game(&mut window).bout.round().hands()[0].position;
+    window.hover_at(at(hand.x + 0.05, hand.y));
+    frames(&mut window, 3);
+    window.hover_at(at(hand.x, hand.y));
+    frames(&mut window, 20);
+    for swing in 0..12 {
+        let x = if swing % 2 == 0 { 0.4 } else { -1.2 };
+        window.hover_at(at(x, 0.3 + 0.02 * swing as f32));
+        frames(&mut window, 16);
+    }
+    assert!(game(&mut window).bout.round().progress().pieces > 3);
+    frames(&mut window, 40);
+    // One button is at the top, one beside the message that the round cannot be won.
+    assert_eq!(window.get_all_by_label("Restart").count(), 2);
+    for x in [-0.8, 0.3, -0.5] {
+        window.hover_at(at(x, 0.4));
+        frames(&mut window, 3);
+        // The spoon itself may be caught by the rubble.
+        let wanted = game(&mut window).controls.players.wanted(0);
+        let wanted = wanted.expect("the mouse has picked up the hand");
+        assert!((wanted.x - x).abs() < 0.05, "{x}: {wanted}");
+    }
 }

@@ -116,4 +116,13 @@ fn sliders_change_the_world() {
         "{}",
         round.world().config().gravity
     );
+    // The hand follows the mouse while the sliders are shown.
+    let view = game(&mut window).bout.view.unwrap();
+    let hand = game(&mut window).bout.round().hands()[0].position;
+    for away in [0.02, 0.0, 0.3] {
+        window.hover_at(view.to_screen(hand + away * fuwafuwa::Vec3::X));
+        frames(&mut window, 30);
+    }
+    let now = game(&mut window).bout.round().hands()[0].position;
+    assert!((now.x - hand.x - 0.3).abs() < 0.05, "{hand} to {now}");
 }
