@@ -1,8 +1,7 @@
 //! Time that runs back in a round.
 //!
-//! During play, a copy of the round is kept at regular marks, and copies of the last ticks lie closer together. Time that
-//! runs back first shows these. Meanwhile the ticks after an earlier mark are computed once more from the recorded inputs,
-//! and then shown in reverse. The engine is deterministic, so they are the same to the bit.
+//! During play, a copy of the round is kept at regular marks. When time runs back, the ticks after a mark are computed
+//! once more from the recorded inputs, and shown in reverse. The engine is deterministic, so they are the same to the bit.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -157,8 +156,6 @@ pub struct Rewind {
     plan: Plan,
     /// Copies at marks, in the order of their ticks, each with whether it shares its topology with the one before.
     marks: VecDeque<(AnyState, bool)>,
-    /// Copies of the last ticks, as long as an interval between marks, in the order of their ticks.
-    recent: VecDeque<AnyState>,
     /// Inputs of the round when time began to run back.
     frames: Vec<InputFrame>,
     /// Changes of a playground up to then.
@@ -179,7 +176,6 @@ impl Rewind {
         Self {
             plan: plan_for(round, &marks),
             marks,
-            recent: VecDeque::new(),
             frames: Vec::new(),
             changes: Vec::new(),
             shown: Vec::new(),
@@ -193,13 +189,6 @@ impl Rewind {
         let tick = round.ticks();
         if tick.is_multiple_of(LOOK) {
             self.adapt(round);
-        }
-        if tick.is_multiple_of(self.plan.shown) {
-            self.recent.push_back(AnyState::of(round));
-            let is_old = |state: &AnyState| state.tick() + self.plan.mark < tick;
-            while self.recent.front().is_some_and(is_old) {
-                self.recent.pop_front();
-            }
         }
         if tick.is_multiple_of(self.plan.mark) {
             let state = AnyState::of(round);
@@ -253,15 +242,10 @@ impl Rewind {
     pub fn begin(&mut self, round: &AnyRound) {
         self.frames = round.frames().to_vec();
         self.changes = round.changes().to_vec();
+        self.shown.clear();
         self.before.clear();
         self.computing = None;
-        let is_earlier = |state: &AnyState| state.tick() < round.ticks();
-        self.shown = std::mem::take(&mut self.recent)
-            .into_iter()
-            .filter(is_earlier)
-            .collect();
-        let first = self.shown.first().map_or(round.ticks(), AnyState::tick);
-        self.compute_up_to(round, first);
+        self.compute_up_to(round, round.ticks());
     }
 
     /// Computes a tick of the states that will be shown. Returns whether there is nothing left to compute now.
@@ -304,11 +288,11 @@ impl Rewind {
         true
     }
 
-    /// Lets time run forward again. The states that were not shown are the copies of the last ticks.
+    /// Lets time run forward again.
     pub fn end(&mut self) {
         self.frames = Vec::new();
         self.changes = Vec::new();
-        self.recent = std::mem::take(&mut self.shown).into();
+        self.shown = Vec::new();
         self.before = Vec::new();
         self.computing = None;
     }
