@@ -19,28 +19,24 @@ fn run_back_to(rewind: &mut Rewind, round: &mut AnyRound, tick: u64) {
     rewind.end();
 }
 
-/// Plays on with a bot, and notes the hash after each tick. Returns the largest step of
-/// the plans on the way.
+/// Plays on with a bot, and notes the hash after each tick.
 fn play(
     round: &mut AnyRound,
     rewind: &mut Rewind,
     hashes: &mut Vec<u64>,
     ticks: u64,
     frame: &mut dyn FnMut(&mut AnyRound) -> InputFrame,
-) -> u64 {
-    let mut step = rewind.stride();
+) {
     for _ in 0..ticks {
         if round.progress().outcome.is_some() {
-            break;
+            return;
         }
         let frame = frame(round);
         round.step(frame);
         rewind.note(round);
-        step = step.max(rewind.stride());
         hashes.truncate(round.ticks() as usize);
         hashes.push(round.hash());
     }
-    step
 }
 
 /// Verifies that a replay of the round plays to the same end.
@@ -63,7 +59,7 @@ fn rewind_at_random(id: &str, kind: BotKind, seed: u64, most: usize) -> usize {
     let mut rewind = Rewind::new(&round);
     let mut hashes = vec![round.hash()];
     let mut bot = Bot::new(kind, seed);
-    let (mut count, mut step) = (0, rewind.stride());
+    let mut count = 0;
     while count < most && round.progress().outcome.is_none() {
         // Most rewinds are short, so that the test takes less time.
         let [ticks, back] = match count % 8 {
@@ -72,7 +68,7 @@ fn rewind_at_random(id: &str, kind: BotKind, seed: u64, most: usize) -> usize {
         };
         let ticks = random.u64(1..ticks);
         let mut ask = |round: &mut AnyRound| round.ask(&mut bot);
-        step = step.max(play(&mut round, &mut rewind, &mut hashes, ticks, &mut ask));
+        play(&mut round, &mut rewind, &mut hashes, ticks, &mut ask);
         if round.progress().outcome.is_some() {
             break;
         }
@@ -80,9 +76,8 @@ fn rewind_at_random(id: &str, kind: BotKind, seed: u64, most: usize) -> usize {
         let goal = now.saturating_sub(random.u64(1..back));
         run_back_to(&mut rewind, &mut round, goal);
         let tick = round.ticks();
-        // Where bodies tear, plans change, and copies can lie up to a fifth of a second apart.
         assert!(
-            tick <= now && (tick + step.max(12) > goal),
+            tick <= now && (tick + rewind.stride() > goal),
             "{id}: {now} to {goal}, {tick}"
         );
         assert_eq!(round.hash(), hashes[tick as usize], "{id} at tick {tick}");
