@@ -288,14 +288,16 @@ impl Game {
         }
     }
 
+    /// Returns why the level with this index in [`Self::levels`] is closed although its section may be open.
+    pub fn own_lock_of(&self, index: usize) -> Option<Lock> {
+        let must_tear = self.settings.calm && self.levels[index].must_tear();
+        must_tear.then_some(Lock::Calm)
+    }
+
     /// Returns why the level with this index in [`Self::levels`] is closed; `None` if it is open.
     pub fn lock_of_level(&self, index: usize) -> Option<Lock> {
-        let level = &self.levels[index];
-        let must_tear = self.settings.calm && level.must_tear();
-        let section = self.section_of(index);
-        must_tear
-            .then_some(Lock::Calm)
-            .or_else(|| self.lock_of(section))
+        let own = self.own_lock_of(index);
+        own.or_else(|| self.lock_of(self.section_of(index)))
     }
 
     /// Starts the next open level after the chosen one in the order of the list. After the last one, shows the list.

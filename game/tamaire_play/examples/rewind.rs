@@ -83,14 +83,7 @@ fn measure(id: &str, pieces: usize) -> Result<(), Box<dyn Error>> {
             break;
         }
     }
-    let nodes: usize = match &round {
-        AnyRound::Plane(round) => { round.world().soft_bodies() }
-            .map(|(_, body)| body.mesh().nodes().count())
-            .sum(),
-        AnyRound::Space(round) => { round.world().soft_bodies() }
-            .map(|(_, body)| body.mesh().nodes().count())
-            .sum(),
-    };
+    let nodes = round.nodes();
     let (mut ticks, mut copies, mut begins) = (Vec::new(), Vec::new(), Vec::new());
     let mut bytes = 0;
     for _ in 0..TIMES {

@@ -47,6 +47,11 @@ impl AnyRound {
         both!(self, round => round.change(change))
     }
 
+    /// See [`Round::nodes`].
+    pub fn nodes(&self) -> usize {
+        both!(self, round => round.nodes())
+    }
+
     /// See [`Round::tool`].
     pub fn tool(&self) -> (Tool, bool) {
         both!(self, round => round.tool())

@@ -33,8 +33,7 @@ impl InputFrame {
     /// Returns the frame with a target for a player, counted from 0 [m]. Coordinates beyond ±4 m are clamped,
     /// and NaN becomes 0.
     pub fn with(mut self, player: usize, position: Vec3) -> Self {
-        let unit = |k: f32| ((k * UNITS_PER_METRE).round() as i16).max(-i16::MAX);
-        self.goals[player] = Some(position.to_array().map(unit));
+        self.goals[player] = Some(units_of(position));
         self
     }
 
@@ -69,9 +68,19 @@ impl InputFrame {
 
     /// Returns the target of a player [m].
     pub fn goal(&self, player: usize) -> Option<Vec3> {
-        let units = self.goals[player]?.map(f32::from);
-        Some(Vec3::from(units) / UNITS_PER_METRE)
+        self.goals[player].map(position_of)
     }
+}
+
+/// Returns a position [m] in units of 1/8192 m. Coordinates beyond ±4 m are clamped, and NaN becomes 0.
+pub(crate) fn units_of(position: Vec3) -> [i16; 3] {
+    let unit = |k: f32| ((k * UNITS_PER_METRE).round() as i16).max(-i16::MAX);
+    position.to_array().map(unit)
+}
+
+/// Returns the position [m] for [`units_of`].
+pub(crate) fn position_of(units: [i16; 3]) -> Vec3 {
+    Vec3::from(units.map(f32::from)) / UNITS_PER_METRE
 }
 
 #[cfg(test)]

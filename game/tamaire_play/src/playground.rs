@@ -2,6 +2,7 @@
 //!
 //! A [`Change`] is made between two ticks. It is part of the recording, so a replay and time that runs back make it again.
 
+use crate::input::{position_of, units_of};
 use crate::{Assist, Round};
 use fuwafuwa::{
     Blade, Dim, DimVector, Joint, JointAnchor, JointHandle, Layers, Shape, SoftBody,
@@ -28,8 +29,6 @@ const VOXELS: [usize; 2] = [32, 10];
 const REACH: f32 = 0.04;
 /// Half the length of the knife's edge, which stands upright in 3D [m].
 const EDGE: f32 = 0.35;
-/// Units of a position per metre, as in [`InputFrame`](crate::InputFrame).
-const UNITS: f32 = crate::input::UNITS_PER_METRE;
 
 /// Material of an added body.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -129,8 +128,7 @@ pub enum Change {
 impl Change {
     /// Returns the change that adds a body with its middle at a position [m].
     pub fn add(form: Form, stuff: Stuff, at: Vec3) -> Self {
-        let unit = |k: f32| (k * UNITS).round() as i16;
-        let at = at.to_array().map(unit);
+        let at = units_of(at);
         Self::Add { form, stuff, at }
     }
 }
@@ -186,7 +184,7 @@ impl<D: Dim> Round<D> {
             return Err(ChangeError::TooMany);
         }
         if let Change::Add { form, stuff, at } = change {
-            let more = nodes(&self.body_of(form, stuff, at)?);
+            let more = self.body_of(form, stuff, at)?.mesh().node_count();
             // A waiting change may clear the room, and bodies of the same size may be waiting.
             let cleared = self
                 .waiting()
@@ -214,7 +212,7 @@ impl<D: Dim> Round<D> {
         match change {
             Change::Add { form, stuff, at } => {
                 let body = self.body_of(form, stuff, at)?;
-                if self.nodes() + nodes(&body) > MOST_NODES {
+                if self.nodes() + body.mesh().node_count() > MOST_NODES {
                     return Err(ChangeError::Full);
                 }
                 self.world_mut().add_soft_body(body).map_err(invalid)?;
@@ -354,17 +352,9 @@ impl<D: Dim> Round<D> {
         self.level().game().assists.contains(&Assist::Unbreakable)
     }
 
-    /// Returns the number of nodes of all bodies.
-    fn nodes(&self) -> usize {
-        self.world()
-            .soft_bodies()
-            .map(|(_, body)| nodes(body))
-            .sum()
-    }
-
     /// Builds a body to be added.
     fn body_of(&self, form: Form, stuff: Stuff, at: [i16; 3]) -> Result<SoftBody<D>, ChangeError> {
-        let mut at = at.map(|k| f32::from(k) / UNITS - 0.5 * WIDTH);
+        let mut at = position_of(at).to_array().map(|k| k - 0.5 * WIDTH);
         if D::N == 2 {
             at[2] = 0.0;
         }
@@ -385,10 +375,6 @@ impl<D: Dim> Round<D> {
         let body = body.expect("the scene has a body");
         world.remove(body).map_err(|error| invalid(&error))
     }
-}
-
-fn nodes<D: Dim>(body: &SoftBody<D>) -> usize {
-    body.mesh().nodes().count()
 }
 
 fn invalid(error: fuwafuwa::Error) -> ChangeError {

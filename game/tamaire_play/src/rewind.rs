@@ -29,7 +29,7 @@ use crate::playground::TimedChange;
 use crate::round::MAX_TICKS;
 use crate::round::RoundState;
 use crate::{AnyRound, InputFrame};
-use fuwafuwa::{Dim, Dim2, Dim3, World};
+use fuwafuwa::{Dim2, Dim3};
 use std::collections::VecDeque;
 
 /// Longest time that can run back [ticks]: 10 s.
@@ -310,9 +310,10 @@ impl Rewind {
 
 /// Returns the plan for further copies of a round, of which there are copies at marks.
 fn plan_for(round: &AnyRound, marks: &VecDeque<(AnyState, bool)>) -> Plan {
-    let (nodes, dim) = match round {
-        AnyRound::Plane(round) => (nodes_of(round.world()), 0),
-        AnyRound::Space(round) => (nodes_of(round.world()), 1),
+    let nodes = round.nodes();
+    let dim = match round {
+        AnyRound::Plane(_) => 0,
+        AnyRound::Space(_) => 1,
     };
     let alone = marks.iter().filter(|(_, shares)| !shares).count();
     let sharing = marks.len() - alone;
@@ -321,11 +322,6 @@ fn plan_for(round: &AnyRound, marks: &VecDeque<(AnyState, bool)>) -> Plan {
     let tears = marks.iter().skip(1).any(|(_, shares)| !shares);
     let shown = if tears { ALONE[dim] } else { SHARING[dim] };
     Plan::of(all / marks.len().max(1), nodes * shown)
-}
-
-fn nodes_of<D: Dim>(world: &World<D>) -> usize {
-    let bodies = world.soft_bodies();
-    bodies.map(|(_, body)| body.mesh().nodes().count()).sum()
 }
 
 #[cfg(test)]

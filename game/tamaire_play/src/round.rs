@@ -385,6 +385,12 @@ impl<D: Dim> Round<D> {
         hand.expect("hands of players stay in the world")
     }
 
+    /// Returns the number of nodes of all bodies.
+    pub fn nodes(&self) -> usize {
+        let bodies = self.world.soft_bodies();
+        bodies.map(|(_, body)| body.mesh().node_count()).sum()
+    }
+
     /// Returns the regions to be filled.
     pub fn baskets(&self) -> &[Basket<D>] {
         &self.baskets

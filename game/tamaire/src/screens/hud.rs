@@ -146,13 +146,19 @@ fn draw_chips(row: &mut ChipRow, theme: &Theme, game: &Game) {
     }
 }
 
+/// Returns the lower edge of the part of the screen that the buttons of a stand or a playground leave free.
+fn lower_edge(ui: &Ui, screen: Rect, game: &Game) -> f32 {
+    let taken = match game.public {
+        Some(_) => STAND,
+        None => toys::height(game, ui),
+    };
+    screen.bottom() - taken
+}
+
 /// Draws the 3D instructions in the lower left corner. Each line disappears once its action was tried.
 fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
     let (theme, painter) = (game.theme(), ui.painter());
-    let mut bottom = match game.public {
-        Some(_) => screen.bottom() - STAND,
-        None => screen.bottom() - toys::height(game, ui),
-    };
+    let mut bottom = lower_edge(ui, screen, game);
     for (index, (line, is_missing)) in game.lesson().into_iter().enumerate().rev() {
         let id = egui::Id::unique(("lesson", index));
         let strength = match game.settings.reduced_motion {
@@ -185,10 +191,7 @@ fn draw_caption(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
     let font = FontId::proportional(18.0 * scale);
     let width = (screen.width() - scale * 48.0).min(scale * 620.0);
     let galley = painter.layout(text, font, theme.ink, width);
-    let low = match game.public {
-        Some(_) => screen.bottom() - STAND,
-        None => screen.bottom() - toys::height(game, ui),
-    };
+    let low = lower_edge(ui, screen, game);
     let size = galley.size() + scale * vec2(32.0, 16.0);
     let middle = pos2(screen.center().x, low - scale * GAP - 0.5 * size.y);
     let rect = Rect::from_center_size(middle, size);

@@ -22,6 +22,8 @@ use tamaire_sound::Menu;
 const GAP: f32 = 20.0;
 /// Approximate width of a tile [points].
 const WIDE: f32 = 236.0;
+/// Height of a tile below its thumbnail [points].
+pub(super) const BELOW: f32 = 92.0;
 /// Height of the button below a level that the player added [points].
 const SLIM: f32 = 36.0;
 
@@ -47,10 +49,8 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         back |= response.clicked();
         page(ui, "levels", f32::INFINITY, |ui| {
             ui.spacing_mut().item_spacing = vec2(GAP, GAP);
-            let width = ui.available_width();
-            let columns = ((width + GAP) / (WIDE + GAP)).round().max(2.0);
-            let wide = (width - (columns - 1.0) * GAP) / columns;
-            let size = vec2(wide, 0.62 * (wide - 20.0) + 92.0);
+            let (columns, size) = grid(ui.available_width(), WIDE, GAP);
+            let wide = size.x;
             let journey = game.journey();
             for section in Section::all() {
                 let places = game.levels_of(section);
@@ -59,11 +59,11 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 }
                 let lock = game.lock_of(section);
                 heading(ui, game, section, &journey, lock);
-                for row in places.chunks(columns as usize) {
+                for row in places.chunks(columns) {
                     let shown = ui.horizontal_top(|ui| {
                         let shown = row.iter().map(|&index| {
                             let shown = ui.vertical(|ui| {
-                                let lock = game.lock_of_level(index);
+                                let lock = game.own_lock_of(index).or(lock);
                                 let response = match lock {
                                     None => tile(ui, game, maps, index, size),
                                     Some(_) => locked_tile(ui, game, index, size),
@@ -123,6 +123,14 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         LevelAction::ShowEnding => game.show_ending(),
         LevelAction::TellLock(lock) => game.notify(lock_text(game, lock)),
     }
+}
+
+/// Returns the number of tiles in a row of width `width`, and their size, for tiles about `wide` wide with gaps `gap`
+/// [points].
+pub(super) fn grid(width: f32, wide: f32, gap: f32) -> (usize, Vec2) {
+    let columns = ((width + gap) / (wide + gap)).round().max(2.0);
+    let wide = (width - (columns - 1.0) * gap) / columns;
+    (columns as usize, vec2(wide, 0.62 * (wide - 20.0) + BELOW))
 }
 
 /// Returns why a chapter or level is closed.

@@ -75,19 +75,7 @@ fn every_shape_of_every_material_can_be_added_until_the_room_is_full() {
         assert!(count >= 4, "{count}");
         wait(&mut round, 1);
         assert_eq!(bodies(&round), 1 + count);
-        let nodes = match &round {
-            AnyRound::Plane(round) => round
-                .world()
-                .soft_bodies()
-                .map(|(_, body)| body.mesh().nodes().count())
-                .sum::<usize>(),
-            AnyRound::Space(round) => round
-                .world()
-                .soft_bodies()
-                .map(|(_, body)| body.mesh().nodes().count())
-                .sum::<usize>(),
-        };
-        assert!(nodes <= MOST_NODES);
+        assert!(round.nodes() <= MOST_NODES);
     }
     let mut classic = begin("classic");
     assert_eq!(

@@ -1,6 +1,6 @@
 //! Choice of a level at the stand.
 
-use super::super::levels::{LEGEND, legend, tile};
+use super::super::levels::{BELOW, LEGEND, grid, legend, tile};
 use super::super::widgets::{dim_background, focus_first, page};
 use super::language::above;
 use crate::exhibit::Stand;
@@ -15,8 +15,6 @@ const GAP: f32 = 28.0;
 const WIDE: f32 = 360.0;
 /// Approximate width of a tile in rows [points].
 const NARROW: f32 = 260.0;
-/// Height of a tile below its thumbnail [points].
-const BELOW: f32 = 92.0;
 
 /// Maximum number of levels that are shown side by side. More are shown in rows.
 const MOST_ACROSS: usize = 3;
@@ -45,12 +43,9 @@ fn in_rows(game: &Game, stage: &mut Stage, ui: &mut Ui) -> Option<usize> {
         ui.vertical_centered(|ui| ui.label(text));
         page(ui, "choice", f32::INFINITY, |ui| {
             ui.spacing_mut().item_spacing = vec2(GAP, GAP);
-            let width = ui.available_width();
-            let columns = ((width + GAP) / (NARROW + GAP)).round().max(2.0);
-            let wide = (width - (columns - 1.0) * GAP) / columns;
-            let size = vec2(wide, 0.62 * (wide - 20.0) + BELOW);
+            let (columns, size) = grid(ui.available_width(), NARROW, GAP);
             let all: Vec<usize> = (0..game.levels.len()).collect();
-            for row in all.chunks(columns as usize) {
+            for row in all.chunks(columns) {
                 ui.horizontal_top(|ui| {
                     for &index in row {
                         let response = tile(ui, game, maps, index, size);
