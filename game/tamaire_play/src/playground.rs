@@ -117,7 +117,7 @@ pub enum Change {
     Gravity(u8),
     /// Drag of the air in tenths of 1/s, up to 50.
     Air(u8),
-    /// Radius of the first player's hand [cm], 3 to 30.
+    /// Radius of the first player's hand in cm, 3 to 30.
     HandSize(u8),
     /// Tool of the first player's hand.
     Tool(Tool),

@@ -16,7 +16,7 @@ pub struct Toys {
     pub gravity: f32,
     /// Drag of the air [1/s].
     pub air: f32,
-    /// Radius of the hand [cm].
+    /// Radius of the hand in cm.
     pub hand: f32,
     /// Whether the sliders are shown.
     pub has_sliders: bool,
