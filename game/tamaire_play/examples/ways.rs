@@ -4,8 +4,10 @@
 //! prints
 //!
 //! - for each way, its result without trembling and with the seeds 1 to `--shakes`,
-//! - for each straight bot at 0.3, 0.7 and 3 m/s, the number of rounds of a minute that it wins, out of `--starts`.
+//! - for each straight bot of `--bots` at each of `--speeds`, the number of rounds of a minute that it wins, out of
+//!   `--starts`.
 //!
+//! `--stretch` and `--shift` try ways that are slower or beside the written ones, as those of a person are.
 //! `--save FOLDER` writes a replay of each way and of the first round of each straight bot.
 
 use clap::Parser;
@@ -19,8 +21,6 @@ use tamaire_play::{AnyRound, Level, Outcome, Ways};
 
 /// Time limit of a round [ticks].
 const MINUTE: usize = 60 * 60;
-/// Speeds of the straight bots [m/s].
-const SPEEDS: [f32; 3] = [0.3, 0.7, 3.0];
 
 /// Measures whether a level asks for more than a straight push, and whether its ways win.
 #[derive(Parser)]
@@ -30,6 +30,18 @@ struct Options {
     /// Number of rounds of each straight bot at each speed.
     #[arg(long, default_value_t = 4)]
     starts: u64,
+    /// Straight bots to try.
+    #[arg(long, value_delimiter = ',', default_values = ["line", "chase"])]
+    bots: Vec<Bot>,
+    /// Speeds of the straight bots [m/s].
+    #[arg(long, value_delimiter = ',', default_values_t = [0.3, 0.7, 3.0])]
+    speeds: Vec<f32>,
+    /// Factor by which the times of the ways are multiplied.
+    #[arg(long, default_value_t = 1.0)]
+    stretch: f32,
+    /// Distance by which the paths are moved: x,y,z [m].
+    #[arg(long, value_delimiter = ',', allow_hyphen_values = true)]
+    shift: Vec<f32>,
     /// Number of trembling rounds of each way.
     #[arg(long, default_value_t = 2)]
     shakes: u64,
@@ -41,6 +53,13 @@ struct Options {
     save: Option<PathBuf>,
 }
 
+/// A bot that only pushes straight.
+#[derive(Copy, Clone, Debug, clap::ValueEnum)]
+enum Bot {
+    Line,
+    Chase,
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
     let level = options.folder.join("level.toml");
@@ -48,7 +67,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         fs::read(options.folder.join(name))
     })?;
     let level = Arc::new(level);
-    let ways = Ways::read(&fs::read_to_string(options.folder.join("ways.toml"))?)?;
+    let mut ways = Ways::read(&fs::read_to_string(options.folder.join("ways.toml"))?)?;
+    let paths = ways.way.iter_mut();
+    let points = paths.flat_map(|way| way.path.iter_mut().chain(&mut way.second));
+    for point in points {
+        point[0] *= options.stretch;
+        for (position, shift) in point[1..].iter_mut().zip(&options.shift) {
+            *position += shift;
+        }
+    }
     let save = |name: String, round: &AnyRound| -> Result<(), Box<dyn Error>> {
         if let Some(folder) = &options.save {
             fs::create_dir_all(folder)?;
@@ -76,7 +103,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     if options.way.is_none() {
-        straight(&level, options.starts, save)?;
+        straight(&level, &options, save)?;
     }
     Ok(())
 }
@@ -129,15 +156,17 @@ type Save<'a> = dyn Fn(String, &AnyRound) -> Result<(), Box<dyn Error>> + 'a;
 
 fn straight(
     level: &Arc<Level>,
-    starts: u64,
+    options: &Options,
     save: impl Fn(String, &AnyRound) -> Result<(), Box<dyn Error>>,
 ) -> Result<(), Box<dyn Error>> {
     let save: &Save = &save;
-    for (name, chases) in [("line", false), ("chase", true)] {
-        for speed in SPEEDS {
+    let starts = options.starts;
+    for bot in &options.bots {
+        let name = format!("{bot:?}").to_lowercase();
+        for &speed in &options.speeds {
             let play = |seed: u64| {
                 let mut round = AnyRound::new(level.clone());
-                let mut bot = StraightPush::new(chases, speed, seed);
+                let mut bot = StraightPush::new(matches!(bot, Bot::Chase), speed, seed);
                 round.push_straight(&mut bot, MINUTE);
                 round
             };
