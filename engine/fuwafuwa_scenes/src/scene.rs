@@ -113,7 +113,7 @@ pub use shapes::{
 
 use crate::import::ImportNote;
 use budget::Budget;
-use error::{FieldError, Origin, require, vector_of};
+use error::{FieldError, Origin, expected_number, require, vector_of};
 use fuwafuwa::{
     DEFAULT_TICK, Dim, MIN_TICK, Material, Shape, StiffBodies, VoxelGrid, World, WorldConfig,
 };
@@ -345,7 +345,7 @@ impl Scene {
             added.map_err(|wrong| wrong.inside("body", index))?;
         }
         for (index, text) in self.switch.iter().enumerate() {
-            let checked = text.region::<D>();
+            let checked = text.check::<D>(self.body.len());
             checked.map_err(|wrong| wrong.inside("switch", index))?;
         }
         for (index, text) in self.field.iter().enumerate() {
@@ -396,7 +396,7 @@ impl Scene {
             let expected = match (count, switch) {
                 (_, None) => continue,
                 (0, _) => "expected a [[switch]] in the scene".to_string(),
-                (_, Some(number)) => format!("expected 1 to {count}, found {number}"),
+                (_, Some(number)) => expected_number(count, number),
             };
             let good = switch.is_some_and(|number| (1..=count).contains(&number));
             require(good, "switch", expected).map_err(|wrong| wrong.inside(list, index))?;

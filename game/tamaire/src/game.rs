@@ -614,10 +614,10 @@ impl Game {
 
     /// Whether the round is visible, even if dimmed. A hidden round stands still and is silent.
     pub fn is_seen(&self) -> bool {
-        use Screen::{Ending, Forces, Levels, Licences, Replays, Settings};
+        use Screen::{Ending, Forces, Levels, Licences, Replays, Settings, Toolbox};
         !matches!(
             self.screen(),
-            Levels | Ending | Replays | Settings | Forces | Licences
+            Levels | Ending | Replays | Settings | Forces | Licences | Toolbox
         )
     }
 

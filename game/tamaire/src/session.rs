@@ -117,7 +117,7 @@ impl Session {
     /// the round, and there is no other ghost.
     pub fn show_first_move(&mut self) -> bool {
         if self.is_played() && self.ghost().is_none() {
-            self.guide = Guide::new(self.round().level());
+            self.guide = Guide::new(self.round());
             return self.guide.is_some();
         }
         false
@@ -196,10 +196,10 @@ impl Session {
     }
 
     /// Lets time run back by `seconds` [s], as far as the earlier states are computed. `clock` measures the time for
-    /// that. `seen` is called with the round after each change. A ghost waits.
-    pub fn run_back(&mut self, seconds: f32, clock: &Clock, mut seen: impl FnMut(&AnyRound)) {
+    /// that. A ghost waits. Returns whether the round has changed.
+    pub fn run_back(&mut self, seconds: f32, clock: &Clock) -> bool {
         let (Player::People(round), Some(rewind)) = (&mut self.player, &mut self.rewind) else {
-            return;
+            return false;
         };
         if self.back.is_none() {
             rewind.begin(round);
@@ -207,7 +207,7 @@ impl Session {
         }
         let step = rewind.stride() as f32 * DEFAULT_TICK;
         let mut back = self.back.unwrap_or(step) + seconds;
-        let began = clock.now();
+        let (began, before) = (clock.now(), round.ticks());
         while !rewind.prepare(round) && clock.now() - began < BUDGET {}
         while back >= step && rewind.left(round) > 0 {
             if !rewind.is_ready() {
@@ -217,10 +217,10 @@ impl Session {
             }
             rewind.back(round);
             rewind.prepare(round);
-            seen(round);
             back -= step;
         }
         self.back = Some(back);
+        round.ticks() != before
     }
 
     /// Lets time run forward again after [`Self::run_back`].
@@ -272,15 +272,11 @@ impl Session {
     /// frame when there is no `time` left.
     fn guide(&mut self, ticks: usize, time: impl Fn() -> bool) {
         for tick in 0..ticks {
-            let Some(guide) = &mut self.guide else {
-                return;
-            };
             if tick > 0 && !time() {
                 return;
             }
-            if !guide.step() {
-                self.guide = None;
-            }
+            let guide = self.guide.take();
+            self.guide = guide.and_then(|mut guide| guide.step(self.round()).then_some(guide));
         }
     }
 

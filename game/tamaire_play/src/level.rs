@@ -246,6 +246,7 @@ impl Level {
             2 => room::check(&level.start::<Dim2>()?.0, level.arena()),
             _ => room::check(&level.start::<Dim3>()?.0, level.arena()),
         };
+        let checked = checked.and(room::check_hint(&level));
         let wrong = |(field, reason)| LevelError::NoGame {
             id: id.into(),
             field,

@@ -149,9 +149,12 @@ pub enum ChangeError {
     /// The level has a basket.
     #[error("expected a level without a basket")]
     NoPlayground,
-    /// There are too many bodies or pins.
-    #[error("expected at most {MOST_NODES} nodes in all bodies, and {MOST_JOINTS} joints")]
+    /// There are too many bodies.
+    #[error("expected at most {MOST_NODES} nodes in all bodies")]
     Full,
+    /// There are too many pins.
+    #[error("expected at most {MOST_JOINTS} joints")]
+    TooManyPins,
     /// There are too many changes, between two ticks or in the whole round.
     #[error("expected at most {MOST_AT_ONCE} changes at once, and {MOST_CHANGES} in a round")]
     TooMany,
@@ -175,13 +178,17 @@ impl<D: Dim> Round<D> {
     /// Makes a change of a playground at the beginning of the next tick, and records it.
     ///
     /// # Errors
-    /// [`ChangeError`] if the level has a basket, or if there are too many bodies.
+    /// [`ChangeError`] if the level has a basket, or if there are too many bodies, pins or changes.
     pub fn change(&mut self, change: Change) -> Result<(), ChangeError> {
         if !self.baskets().is_empty() {
             return Err(ChangeError::NoPlayground);
         }
         if self.waiting().len() >= MOST_AT_ONCE || self.changes().len() >= MOST_CHANGES {
             return Err(ChangeError::TooMany);
+        }
+        let pins = change == Change::Press(true) && self.tool().0 != Tool::Push;
+        if pins && self.world().joints().count() >= MOST_JOINTS {
+            return Err(ChangeError::TooManyPins);
         }
         if let Change::Add { form, stuff, at } = change {
             let more = self.body_of(form, stuff, at)?.mesh().node_count();

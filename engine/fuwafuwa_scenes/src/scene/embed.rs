@@ -4,7 +4,7 @@
 use super::MAX_MATERIALS;
 use super::body::{BodyText, MaterialText};
 use super::budget::Budget;
-use super::error::{FieldError, require};
+use super::error::{FieldError, expected_number, require};
 use super::grid::{check_across, colours, wrong_type};
 use crate::import::{
     Colours, FilePosition, FileType, ImportError, ImportNote, Model, NoteKind, Picture,
@@ -120,10 +120,7 @@ impl BodyText {
         }
         let number = self.material.take().unwrap_or(1);
         let (count, own) = (materials.len(), usize::from(number).wrapping_sub(1));
-        let missing = || {
-            let reason = format!("expected 1 to {count}, found {number}");
-            FieldError::new("material", reason)
-        };
+        let missing = || FieldError::new("material", expected_number(count, number));
         let like = materials.get(own).cloned().ok_or_else(missing)?;
         let all = count + tints.len();
         let expected = format!(

@@ -166,6 +166,15 @@ impl FieldError {
     }
 }
 
+/// Returns the reason why a number of an entry in a list of `count` entries is wrong.
+pub(super) fn expected_number(count: usize, found: impl std::fmt::Display) -> String {
+    match count {
+        0 => format!("expected nothing, because the list is empty, found {found}"),
+        1 => format!("expected 1, found {found}"),
+        _ => format!("expected 1 to {count}, found {found}"),
+    }
+}
+
 /// Returns an error for `field` unless `good`.
 pub(super) fn require(good: bool, field: &str, reason: impl ToString) -> Result<(), FieldError> {
     good.then_some(())

@@ -1,6 +1,6 @@
 //! Rules of the game in a scene file.
 
-use super::error::{FieldError, require};
+use super::error::{FieldError, expected_number, require};
 use super::shapes::{BoxText, ShapeChoice, check_path};
 use fuwafuwa::{Dim, Shape};
 use serde::{Deserialize, Serialize};
@@ -246,10 +246,14 @@ impl GameText {
 }
 
 /// Checks a list of numbers of bodies.
-fn check_numbers(field: &str, numbers: &[usize], bodies: usize) -> Result<(), FieldError> {
+pub(super) fn check_numbers(
+    field: &str,
+    numbers: &[usize],
+    bodies: usize,
+) -> Result<(), FieldError> {
     for (index, &number) in numbers.iter().enumerate() {
         let field = format!("{field}.{}", index + 1);
-        let expected = format!("expected 1 to {bodies}, found {number}");
+        let expected = expected_number(bodies, number);
         require((1..=bodies).contains(&number), &field, expected)?;
         let expected = format!("expected each body once, found {number} again");
         require(!numbers[..index].contains(&number), &field, expected)?;

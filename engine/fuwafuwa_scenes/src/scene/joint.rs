@@ -1,6 +1,6 @@
 //! Joints of a scene file.
 
-use super::error::{FieldError, require, vector_of};
+use super::error::{FieldError, expected_number, require, vector_of};
 use fuwafuwa::{Dim, Joint, JointAnchor, JointKind, RigidBodyHandle, SoftBodyHandle, World};
 use serde::{Deserialize, Serialize};
 
@@ -179,9 +179,8 @@ impl JointAnchorText {
 }
 
 fn nth<T: Copy>(field: &str, number: usize, list: &[T]) -> Result<T, FieldError> {
-    let count = list.len();
     let found = number.checked_sub(1).and_then(|index| list.get(index));
-    let reason = || format!("expected 1 to {count}, found {number}");
+    let reason = || expected_number(list.len(), number);
     found
         .copied()
         .ok_or_else(|| FieldError::new(field, reason()))

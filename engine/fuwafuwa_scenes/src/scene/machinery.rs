@@ -1,6 +1,7 @@
 //! Moving parts of a scene: obstacles on paths, turning obstacles, switches and fields.
 
 use super::error::{FieldError, require, vector_of};
+use super::game::check_numbers;
 use super::shapes::{BallText, BoxText, ShapeChoice};
 use super::{ObstacleText, Scene};
 use fuwafuwa::inspect::is_hand;
@@ -26,6 +27,9 @@ pub struct SwitchText {
     /// Mass of soft bodies in the region from which it is on [kg]; default any. Only with `by = "body"`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass: Option<f32>,
+    /// Numbers of the bodies that turn it on, counted from 1; default all. Only with `by = "body"`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<usize>,
     /// Whether it stays on after it was on once; default false.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub stays: bool,
@@ -63,6 +67,14 @@ pub struct FieldText {
 }
 
 impl SwitchText {
+    /// Checks every field in a scene with `bodies` bodies.
+    pub(super) fn check<D: Dim>(&self, bodies: usize) -> Result<(), FieldError> {
+        let good = self.bodies.is_empty() || self.by != Some(SwitchedBy::Hand);
+        require(good, "bodies", "allowed only with by = \"body\"")?;
+        check_numbers("bodies", &self.bodies, bodies)?;
+        self.region::<D>().map(|_| ())
+    }
+
     /// Returns the checked region.
     pub(super) fn region<D: Dim>(&self) -> Result<Shape<D>, FieldError> {
         let mass = self.mass.unwrap_or(1.0);
@@ -311,7 +323,11 @@ impl<D: Dim> Switch<D> {
             }
             SwitchedBy::Body => {
                 let least = self.text.mass.unwrap_or(f32::MIN_POSITIVE);
-                let masses = world.soft_bodies().map(|(_, body)| {
+                let named = &self.text.bodies;
+                let counts = |index: &usize| named.is_empty() || named.contains(&(index + 1));
+                let bodies = world.soft_bodies().enumerate();
+                let bodies = bodies.filter(|(index, _)| counts(index));
+                let masses = bodies.map(|(_, (_, body))| {
                     let nodes = body.mesh().nodes().map(|(id, _)| body.node_state(id));
                     let inside = nodes.filter(|&(position, _, _)| is_in(position));
                     inside.map(|(_, _, mass)| mass).sum::<f32>()

@@ -2,7 +2,7 @@
 
 use super::presses::Presses;
 use crate::game::{Game, Screen};
-use crate::input::{Action, InputSource};
+use crate::input::{Action, InputSource, ScanAction};
 use egui::{Context, Key};
 use sticks::{Control, PadButton};
 
@@ -41,16 +41,17 @@ impl Switch {
             }
             return;
         }
-        let (is_space, stays) = (game.bout.turn().is_some(), game.settings.toggle_keys);
+        let (others, stays) = (game.scan_actions(), game.settings.toggle_keys);
         let (is_played, controls) = (game.bout.session.is_played(), &mut game.controls);
-        let rests = controls.scan.pass(is_pressed, stays, steps, is_space);
-        let taken = controls.scan.taken(is_space);
+        controls.scan.pass(is_pressed, stays, steps, &others);
+        let taken = controls.scan.taken(&others);
         // While a replay is shown, every press of the switch opens the pause screen, since nothing else is
         // possible.
-        if rests || !is_played && taken.is_some() {
-            game.act(Action::Pause, InputSource::Keys);
-        } else {
-            controls.devices.taken = taken;
+        match controls.scan.just_taken(&others) {
+            _ if !is_played && taken.is_some() => game.act(Action::Pause, InputSource::Keys),
+            Some(ScanAction::Pause) => game.act(Action::Pause, InputSource::Keys),
+            Some(ScanAction::Tool) => game.bout.toys.is_latched ^= true,
+            _ => controls.devices.taken = taken,
         }
     }
 }

@@ -17,6 +17,8 @@ pub enum Screen {
     Play,
     /// The paused round.
     Paused,
+    /// Tools of a playground, for players without a pointer.
+    Toolbox,
     /// Result of the round.
     Result,
     /// A round received by a link, to watch or to race.
@@ -39,6 +41,7 @@ impl Screen {
             Levels | Together | Replays | Offered => other == Title,
             Play => matches!(other, Title | Levels | Replays | Offered),
             Paused | Result => other == Play,
+            Toolbox => other == Paused,
             Settings => matches!(other, Title | Paused),
             Forces | Licences => other == Settings,
         }
@@ -100,6 +103,7 @@ mod tests {
             (&[Settings][..], Title),
             (&[Levels, Play, Paused, Settings], Paused),
             (&[Levels, Play, Paused, Settings, Forces], Settings),
+            (&[Levels, Play, Paused, Toolbox], Paused),
             (&[Settings, Licences], Settings),
             (&[Levels, Play], Levels),
             (&[Levels, Play, Result, Ending], Levels),

@@ -101,9 +101,9 @@ impl Game {
         let still = self.is_still();
         let bout = &mut self.bout;
         let (session, effects, camera) = (&mut bout.session, &mut bout.effects, &mut bout.camera);
-        session.run_back(seconds, &self.clock, |round| {
-            effects.process_tick(round, camera, still);
-        });
+        if session.run_back(seconds, &self.clock) {
+            effects.process_tick(session.round(), camera, still);
+        }
     }
 
     /// Lets time run forward again. The hands wait until the players reach for them, as at the start of a round.
@@ -336,6 +336,7 @@ mod tests {
             Screen::Forces,
             Screen::Licences,
             Screen::Paused,
+            Screen::Toolbox,
         ] {
             let mut game = game(0.001);
             game.go(Screen::Title);

@@ -1,9 +1,14 @@
 //! The tools of a playground.
 
 use super::{Game, Screen};
-use crate::input::Action;
-use tamaire_play::AnyRound;
+use crate::input::{Action, ScanAction};
+use fuwafuwa::Vec3;
+use fuwafuwa_scenes::scene::Form;
 use tamaire_play::playground::{Change, ChangeError, Stuff, Tool};
+use tamaire_play::{AnyRound, Assist};
+
+/// Distance of an added body from the upper end of the room [m].
+const BELOW_TOP: f32 = 0.35;
 
 /// Choices of the player in a playground.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -20,6 +25,8 @@ pub struct Toys {
     pub hand: f32,
     /// Whether the sliders are shown.
     pub has_sliders: bool,
+    /// Whether a player with one switch has pressed the tool.
+    pub is_latched: bool,
     /// Whether the mouse or a finger presses the tool.
     pub is_pointer_down: bool,
     /// Whether the tool was pressed in the last frame.
@@ -36,6 +43,7 @@ impl Toys {
             air: 0.0,
             hand: 0.0,
             has_sliders: false,
+            is_latched: false,
             is_pointer_down: false,
             is_pressed: false,
         };
@@ -48,6 +56,7 @@ impl Toys {
         (self.tool, self.is_pressed) = round.tool();
         [self.gravity, self.air] = round.gravity_and_air();
         self.hand = 100.0 * round.hands()[0].radius;
+        self.is_latched = false;
     }
 }
 
@@ -66,14 +75,79 @@ impl Game {
             // These let go what is held. If the player still presses, the tool is pressed again.
             self.bout.toys.is_pressed = false;
         }
-        if self
-            .bout
-            .session
-            .change(change)
-            .is_err_and(|error| error != ChangeError::NoPlayground)
-        {
-            self.notify(self.words().room_is_full.to_string());
+        let said = self.words();
+        match self.bout.session.change(change) {
+            Ok(()) | Err(ChangeError::NoPlayground) => {}
+            Err(ChangeError::Full) => self.notify(said.room_is_full.to_string()),
+            Err(ChangeError::TooManyPins) => self.notify(said.too_many_pins.to_string()),
+            Err(ChangeError::TooMany) => self.notify(said.too_many_changes.to_string()),
+            Err(ChangeError::Invalid(reason)) => self.notify(reason),
         }
+    }
+
+    /// Chooses a tool of the hand.
+    pub fn choose_tool(&mut self, tool: Tool) {
+        self.bout.toys.tool = tool;
+        self.bout.toys.is_latched = false;
+        self.change_playground(Change::Tool(tool));
+    }
+
+    /// Chooses gravity, air and the size of the hand.
+    pub fn choose_air(&mut self, chosen: Toys) {
+        let toys = &mut self.bout.toys;
+        let before = *toys;
+        (toys.gravity, toys.air, toys.hand) = (chosen.gravity, chosen.air, chosen.hand);
+        let unit = |value: f32, step: f32| (value / step).round() as u8;
+        if before.gravity != chosen.gravity {
+            self.change_playground(Change::Gravity(unit(chosen.gravity, 0.5)));
+        }
+        if before.air != chosen.air {
+            self.change_playground(Change::Air(unit(chosen.air, 0.1)));
+        }
+        if before.hand != chosen.hand {
+            self.change_playground(Change::HandSize(unit(chosen.hand, 1.0)));
+        }
+    }
+
+    /// Returns the tools of a playground. In a level in which nothing tears there is no knife.
+    pub fn tools(&self) -> impl Iterator<Item = Tool> + use<> {
+        let assists = &self.bout.round().level().game().assists;
+        let can_cut = !assists.contains(&Assist::Unbreakable);
+        let tools = [Tool::Push, Tool::Grab, Tool::Knife, Tool::Pin];
+        let tools = tools.into_iter();
+        tools.filter(move |&tool| can_cut || tool != Tool::Knife)
+    }
+
+    /// Adds a body of the chosen material below the upper end of the room, on the side away from the hand.
+    pub fn add_body(&mut self, form: Form) {
+        let at = self.place_to_add();
+        self.change_playground(Change::add(form, self.bout.toys.stuff, at));
+    }
+
+    fn place_to_add(&self) -> Vec3 {
+        let round = self.bout.round();
+        let [low, high] = round.level().arena();
+        let middle = 0.5 * (low + high);
+        let side = if round.hands()[0].position.x < middle.x {
+            0.25
+        } else {
+            -0.25
+        };
+        // Neighbours lie a little apart, so that towers do not stand still.
+        let apart = 0.03 * (round.ticks() % 7) as f32;
+        let x = middle.x + side * (high.x - low.x) + apart;
+        Vec3::new(x, high.y - BELOW_TOP, middle.z)
+    }
+
+    /// Returns the actions that a player with one switch is offered after the directions.
+    pub fn scan_actions(&self) -> Vec<ScanAction> {
+        let in_space = self.bout.turn().is_some();
+        let has_tool = self.is_in_playground() && self.bout.toys.tool != Tool::Push;
+        let heights = [ScanAction::Raise, ScanAction::Lower];
+        let heights = heights.into_iter().filter(|_| in_space);
+        let tool = has_tool.then_some(ScanAction::Tool);
+        let usual = [ScanAction::Rewind, ScanAction::Pause];
+        heights.chain(tool).chain(usual).collect()
     }
 
     /// Tells the round when the player presses the tool or lets it go.
@@ -81,7 +155,8 @@ impl Game {
         let devices = &self.controls.devices;
         let is_held = devices.is_held(&self.settings.bindings, Action::Tool);
         let toys = &mut self.bout.toys;
-        let is_pressed = (is_held || toys.is_pointer_down) && toys.tool != Tool::Push;
+        let is_pressed = is_held || toys.is_pointer_down || toys.is_latched;
+        let is_pressed = is_pressed && toys.tool != Tool::Push;
         let is_on = self.screen() == Screen::Play && self.is_in_playground();
         if is_on && is_pressed != self.bout.toys.is_pressed {
             self.bout.toys.is_pressed = is_pressed;
@@ -95,8 +170,6 @@ mod tests {
     use super::*;
     use crate::platform::{Files, Sound};
     use app_shell::Pads;
-    use fuwafuwa::Vec3;
-    use fuwafuwa_scenes::scene::Form;
 
     #[test]
     fn pressing_is_told_once_and_a_full_room_is_told() {

@@ -360,7 +360,7 @@ impl Players {
                 ScanAction::Move(way) => asked.lean += SWITCHED * way,
                 ScanAction::Raise => asked.lift += rises,
                 ScanAction::Lower => asked.lift -= rises,
-                ScanAction::Rewind | ScanAction::Pause => {}
+                ScanAction::Tool | ScanAction::Rewind | ScanAction::Pause => {}
             }
             self.used[player] = Some(InputSource::Keys);
         }

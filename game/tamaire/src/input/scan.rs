@@ -49,6 +49,8 @@ pub enum ScanAction {
     Raise,
     /// In 3D: lowers the hand while the switch is pressed.
     Lower,
+    /// In a playground: presses the tool, or lets it go.
+    Tool,
     /// Lets time run back while the switch is pressed.
     Rewind,
     /// Pauses the round.
@@ -64,14 +66,16 @@ pub struct Scan {
     /// selects nothing.
     was_up: bool,
     is_taken: bool,
+    /// Whether the last call selected an offer.
+    is_new: bool,
     is_known: bool,
 }
 
 impl Scan {
     /// Advances scanning by `steps`, with the switch pressed or not. With `stays`, one press selects and the
-    /// next one ends the action; otherwise the action lasts while the switch is pressed. Returns whether a
-    /// pause is requested.
-    pub fn pass(&mut self, is_pressed: bool, stays: bool, steps: f32, is_space: bool) -> bool {
+    /// next one ends the action; otherwise the action lasts while the switch is pressed. `others` are the actions that
+    /// are offered after the directions.
+    pub fn pass(&mut self, is_pressed: bool, stays: bool, steps: f32, others: &[ScanAction]) {
         let is_new = is_pressed && self.was_up;
         self.was_up = !is_pressed;
         self.is_taken = match stays {
@@ -80,21 +84,17 @@ impl Scan {
         };
         self.is_known |= self.is_taken;
         if !self.is_taken {
-            let others = if is_space { 4.0 } else { 2.0 };
-            self.at = (self.at + steps) % (TURN + others);
+            self.at = (self.at + steps) % (TURN + others.len() as f32);
         }
-        is_new && self.is_taken && self.offer(is_space) == ScanAction::Pause
+        self.is_new = is_new && self.is_taken;
     }
 
     /// Returns the current offer: first all directions, beginning at the right, then the other actions.
-    pub fn offer(&self, is_space: bool) -> ScanAction {
-        match (self.at - TURN, is_space) {
-            (after, _) if after < 0.0 => ScanAction::Move(Vec2::angled(TAU * self.at / TURN)),
-            (after, true) if after < 1.0 => ScanAction::Raise,
-            (after, true) if after < 2.0 => ScanAction::Lower,
-            (after, true) if after < 3.0 => ScanAction::Rewind,
-            (after, false) if after < 1.0 => ScanAction::Rewind,
-            _ => ScanAction::Pause,
+    pub fn offer(&self, others: &[ScanAction]) -> ScanAction {
+        let after = self.at - TURN;
+        match others.get(after.max(0.0) as usize) {
+            Some(&other) if after >= 0.0 => other,
+            _ => ScanAction::Move(Vec2::angled(TAU * self.at / TURN)),
         }
     }
 
@@ -112,8 +112,13 @@ impl Scan {
     }
 
     /// Returns the selected offer.
-    pub fn taken(&self, is_space: bool) -> Option<ScanAction> {
-        self.is_taken.then(|| self.offer(is_space))
+    pub fn taken(&self, others: &[ScanAction]) -> Option<ScanAction> {
+        self.is_taken.then(|| self.offer(others))
+    }
+
+    /// Returns the offer that the last call of [`Self::pass`] has selected, once for each press.
+    pub fn just_taken(&self, others: &[ScanAction]) -> Option<ScanAction> {
+        self.taken(others).filter(|_| self.is_new)
     }
 }
 
@@ -121,28 +126,21 @@ impl Scan {
 mod tests {
     use super::*;
 
+    const OTHERS: [ScanAction; 2] = [ScanAction::Rewind, ScanAction::Pause];
+
     #[test]
     fn all_actions_are_offered_in_turn() {
-        for (is_space, others) in [
-            (false, vec![ScanAction::Rewind, ScanAction::Pause]),
-            (
-                true,
-                vec![
-                    ScanAction::Raise,
-                    ScanAction::Lower,
-                    ScanAction::Rewind,
-                    ScanAction::Pause,
-                ],
-            ),
-        ] {
+        use ScanAction::{Lower, Pause, Raise, Rewind};
+        for others in [&[Rewind, Pause][..], &[Raise, Lower, Rewind, Pause]] {
             let mut scan = Scan::default();
             let mut seen = Vec::new();
             for _ in 0..(TURN as usize + others.len()) * 10 {
-                match scan.offer(is_space) {
+                match scan.offer(others) {
                     ScanAction::Move(way) => seen.push(way),
                     offer => assert_eq!(offer, others[(scan.at - TURN) as usize]),
                 }
-                assert!(!scan.pass(false, false, 0.1, is_space));
+                scan.pass(false, false, 0.1, others);
+                assert_eq!(scan.just_taken(others), None);
             }
             for quarter in [Vec2::X, Vec2::Y, -Vec2::X, -Vec2::Y] {
                 assert!(seen.iter().any(|way| way.dot(quarter) > 0.99), "{quarter}");
@@ -154,15 +152,15 @@ mod tests {
     #[test]
     fn selected_action_lasts_while_switch_is_pressed() {
         let mut scan = Scan::default();
-        scan.pass(false, false, 2.0, false);
-        let offer = scan.offer(false);
+        scan.pass(false, false, 2.0, &OTHERS);
+        let offer = scan.offer(&OTHERS);
         for _ in 0..50 {
-            scan.pass(true, false, 0.5, false);
-            assert_eq!(scan.taken(false), Some(offer));
+            scan.pass(true, false, 0.5, &OTHERS);
+            assert_eq!(scan.taken(&OTHERS), Some(offer));
         }
-        scan.pass(false, false, 0.5, false);
-        assert_eq!(scan.taken(false), None);
-        assert_ne!(scan.offer(false), offer);
+        scan.pass(false, false, 0.5, &OTHERS);
+        assert_eq!(scan.taken(&OTHERS), None);
+        assert_ne!(scan.offer(&OTHERS), offer);
     }
 
     #[test]
@@ -170,7 +168,7 @@ mod tests {
         let mut scan = Scan::default();
         let mut taken = Vec::new();
         for is_pressed in [true, false, true, false, false, true, true, false] {
-            scan.pass(is_pressed, true, 0.1, false);
+            scan.pass(is_pressed, true, 0.1, &OTHERS);
             taken.push(scan.is_taken);
         }
         // The first press started the round, so it selects no action.
@@ -180,8 +178,10 @@ mod tests {
     #[test]
     fn pause_is_requested_once() {
         let mut scan = Scan::default();
-        scan.pass(false, false, TURN + 1.5, false);
-        assert!(scan.pass(true, false, 0.0, false));
-        assert!(!scan.pass(true, false, 0.0, false));
+        scan.pass(false, false, TURN + 1.5, &OTHERS);
+        for expected in [Some(ScanAction::Pause), None] {
+            scan.pass(true, false, 0.0, &OTHERS);
+            assert_eq!(scan.just_taken(&OTHERS), expected);
+        }
     }
 }

@@ -4,11 +4,13 @@ use super::feelings::Feeling;
 use super::rest_frame::{camera, face_at_rest, frame};
 use super::{DrawOptions, Face, Maps, Mood, glow, hint, room_parts, ropes};
 use app_shell::pass::{PaintCallback, lock, pixels};
-use app_shell::{SpaceStage, Theme};
+use app_shell::{SpaceStage, Theme, View};
 use eframe::egui_wgpu::{Callback, RenderState};
 use egui::{Color32, Painter, Shape, Stroke, Ui};
-use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Vec3};
+use fuwafuwa::inspect::{hands, obstacles};
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, MotionType, RigidBodyRef, Vec3};
 use fuwafuwa_render::{Ages, Cost, Frame, Outlines, Particle, Renderer, Sticker, space};
+use std::f32::consts::PI;
 use std::sync::{Arc, Mutex};
 use tamaire_play::{AnyRound, Level, Round};
 
@@ -147,7 +149,8 @@ impl Stage {
         look.effects.confetti.draw(painter, view);
     }
 
-    /// Draws an earlier round: the outlines of its bodies, as smooth as their skin, and its hands.
+    /// Draws an earlier round: the outlines of its bodies, as smooth as their skin, of what moves, and its joints and
+    /// hands.
     fn draw_ghost(&mut self, painter: &Painter, round: &Round<Dim2>, look: &DrawOptions) {
         let (view, stroke) = (&look.view, Stroke::new(GHOST_LINE, GHOST));
         let rings = &mut self.ghost;
@@ -159,11 +162,21 @@ impl Stage {
                 painter.add(Shape::closed_line(points.collect(), stroke));
             }
         }
-        for (player, hand) in round.hands().enumerate() {
-            let at = view.to_screen(hand.position().extend(0.0));
-            let radius = view.scale * hand.shape().inradius();
+        let world = round.world();
+        let moves = |body: &RigidBodyRef<'_, Dim2>| {
+            matches!(body.motion_type(), MotionType::Dynamic { .. }) || body.follows_target()
+        };
+        for body in obstacles(world).filter(moves) {
+            paint_shape(painter, view, &body.shape(), Color32::TRANSPARENT, stroke);
+        }
+        for (handle, _) in world.joints() {
+            if let Ok(Some(anchors)) = world.joint_anchor_positions(handle) {
+                painter.line_segment(anchors.map(|at| view.to_screen(at.extend(0.0))), stroke);
+            }
+        }
+        for (player, hand) in hands(world) {
             let tone = look.theme.hand(player).gamma_multiply(0.35);
-            painter.circle(at, radius, tone, stroke);
+            paint_shape(painter, view, &hand.shape(), tone, stroke);
         }
     }
 
@@ -182,6 +195,52 @@ impl Stage {
         let seconds = (look.time - self.time).max(0.0) as f32;
         self.ages.update(round.world(), seconds);
         self.time = look.time;
+    }
+}
+
+/// Draws the outline of a shape.
+fn paint_shape(
+    painter: &Painter,
+    view: &View,
+    shape: &fuwafuwa::Shape<Dim2>,
+    fill: Color32,
+    stroke: Stroke,
+) {
+    let screen = |at: Vec3| view.to_screen(at.with_z(0.0));
+    let [low, high] = shape.bounds().map(DimVector::to_vec3);
+    match *shape {
+        fuwafuwa::Shape::HalfSpace { .. } => {}
+        fuwafuwa::Shape::Ball { centre, radius } => {
+            painter.circle(screen(centre.to_vec3()), view.scale * radius, fill, stroke);
+        }
+        fuwafuwa::Shape::Box { .. } => {
+            let rect = egui::Rect::from_two_pos(screen(low), screen(high));
+            painter.rect(rect, 0.0, fill, stroke, egui::StrokeKind::Middle);
+        }
+        fuwafuwa::Shape::OrientedBox {
+            centre,
+            half,
+            rotation,
+        } => {
+            let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+            let corners = corners.map(|[x, y]| {
+                let away = Vec3::new(x * half.x, y * half.y, 0.0);
+                screen(centre.to_vec3() + rotation.apply(away))
+            });
+            painter.add(Shape::convex_polygon(corners.to_vec(), fill, stroke));
+        }
+        fuwafuwa::Shape::Capsule { from, to, radius } => {
+            let [from, to] = [from, to].map(|end| screen(end.to_vec3()));
+            let along = (to - from).angle();
+            let half = |end: egui::Pos2, first: f32| {
+                (0..=12).map(move |step| {
+                    let angle = first + PI * step as f32 / 12.0;
+                    end + view.scale * radius * egui::Vec2::angled(angle)
+                })
+            };
+            let outline = half(to, along - 0.5 * PI).chain(half(from, along + 0.5 * PI));
+            painter.add(Shape::convex_polygon(outline.collect(), fill, stroke));
+        }
     }
 }
 

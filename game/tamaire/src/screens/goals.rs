@@ -31,6 +31,8 @@ enum GoalIcon {
     Clock,
     Kept,
     Pieces,
+    Joints,
+    Fragile,
 }
 
 impl GoalIcon {
@@ -39,6 +41,9 @@ impl GoalIcon {
             (Some(route), _, _) => Self::Route(route),
             (_, Some(_), _) => Self::Clock,
             (_, _, Some(_)) => Self::Kept,
+            _ if wish.joints.is_some() => Self::Joints,
+            _ if !wish.whole.is_empty() => Self::Fragile,
+            _ if wish.inside.is_some() => Self::Basket,
             _ => Self::Pieces,
         }
     }
@@ -50,6 +55,8 @@ impl GoalIcon {
             Self::Clock => icons::clock(painter, at, scale, ink),
             Self::Kept => icons::kept(painter, at, scale, ink),
             Self::Pieces => icons::pieces(painter, at, scale, ink),
+            Self::Joints => icons::joints(painter, at, scale, ink),
+            Self::Fragile => icons::egg(painter, at, scale, ink),
         }
     }
 }

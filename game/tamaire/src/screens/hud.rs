@@ -6,8 +6,9 @@ use crate::game::Game;
 use crate::input::Action;
 use app_shell::Theme;
 use app_shell::widgets::fitted;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use fuwafuwa_render::frame::ElementColour;
+use std::sync::Arc;
 
 /// Height of a line of the 3D instructions [points at scale 1].
 const LINE: f32 = 34.0;
@@ -19,6 +20,10 @@ const JAR: f32 = 36.0;
 /// Maximum scale of the overlay. In a small window egui's zoom is reduced, so that menus fit. The overlay
 /// needs less room, so it is enlarged again, at most by this factor.
 const MOST: f32 = 1.4;
+/// Time for which the name of the level is shown at the start of a round [ticks].
+const NAME: u64 = 150;
+/// Time in which the name fades out [ticks].
+const FADE: f32 = 30.0;
 /// Minimum width of a window for the overlay [points at scale 1]. A narrower window is not enlarged.
 const NARROWEST: f32 = 375.0;
 
@@ -50,8 +55,14 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     draw_clock(&mut row, &theme, game);
     goals::strip(&mut row, &theme, game);
     draw_chips(&mut row, &theme, game);
+    let jar = match round.has_basket() {
+        true => screen.top() + 2.0 * scale * (JAR + 4.0),
+        false => screen.top(),
+    };
+    let mut free = screen.with_min_y(jar.max(row.at.y + scale * HIGH) + scale * GAP);
+    free.min.y = draw_name(ui, free, scale, game);
+    draw_caption(ui, free, scale, game);
     draw_lesson(ui, screen, scale, game);
-    draw_caption(ui, screen, scale, game);
     is_on_button
 }
 
@@ -181,22 +192,57 @@ fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
     }
 }
 
-/// Draws the explanation of the element view at the lower edge.
-fn draw_caption(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
+/// Draws the name of the level at the top of the `free` part of the screen, in the first seconds of a round. Returns the
+/// upper edge of what is then free.
+fn draw_name(ui: &Ui, free: Rect, scale: f32, game: &Game) -> f32 {
+    let round = game.bout.round();
+    let left = NAME.saturating_sub(round.ticks()) as f32;
+    if left == 0.0 || game.bout.session.is_rewinding() || game.bout.session.is_winding() {
+        return free.top();
+    }
+    let strength = match game.settings.reduced_motion {
+        true => 1.0,
+        false => (left / FADE).min(1.0),
+    };
+    let name = game.settings.language.of(&round.level().game().name);
+    let ink = game.theme().ink.gamma_multiply(strength);
+    let width = free.width() - scale * 48.0;
+    let galley = fitted(ui.painter(), name, 30.0 * scale, width, ink);
+    draw_label(ui, free, scale, galley, ink, strength, game)
+}
+
+/// Draws the explanation of the element view at the top of the `free` part of the screen.
+fn draw_caption(ui: &Ui, free: Rect, scale: f32, game: &Game) {
     let Some(colour) = game.bout.elements else {
         return;
     };
-    let (theme, painter) = (game.theme(), ui.painter());
     let text = (game.words().elements_caption)(colour).to_string();
     let font = FontId::proportional(18.0 * scale);
-    let width = (screen.width() - scale * 48.0).min(scale * 620.0);
-    let galley = painter.layout(text, font, theme.ink, width);
-    let low = lower_edge(ui, screen, game);
+    let width = (free.width() - scale * 48.0).min(scale * 620.0);
+    let ink = game.theme().ink;
+    let galley = ui.painter().layout(text, font, ink, width);
+    draw_label(ui, free, scale, galley, ink, 1.0, game);
+}
+
+/// Draws a text on a pale background at the top of the `free` part of the screen. Returns the upper edge of what is then
+/// free.
+fn draw_label(
+    ui: &Ui,
+    free: Rect,
+    scale: f32,
+    galley: Arc<Galley>,
+    ink: Color32,
+    strength: f32,
+    game: &Game,
+) -> f32 {
     let size = galley.size() + scale * vec2(32.0, 16.0);
-    let middle = pos2(screen.center().x, low - scale * GAP - 0.5 * size.y);
-    let rect = Rect::from_center_size(middle, size);
-    painter.rect_filled(rect, scale * 16.0, pale(&theme));
-    painter.galley(rect.center() - 0.5 * galley.size(), galley, theme.ink);
+    let at = pos2(free.center().x - 0.5 * size.x, free.top());
+    let rect = Rect::from_min_size(at, size);
+    let fill = pale(&game.theme()).gamma_multiply(strength);
+    ui.painter().rect_filled(rect, scale * 16.0, fill);
+    let at = rect.center() - 0.5 * galley.size();
+    ui.painter().galley(at, galley, ink);
+    rect.bottom() + scale * GAP
 }
 
 /// Draws the legend of element colours: small to large, or relaxed to strained.

@@ -2,7 +2,8 @@
 
 use super::widgets::words;
 use app_shell::Theme;
-use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
+use std::f32::consts::TAU;
 use tamaire_play::Route;
 
 /// Draws an arc, clockwise from the top; `share` 1 is a full circle.
@@ -200,6 +201,27 @@ pub(super) fn pieces(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
     ] {
         painter.circle_filled(at + scale * vec2(x, y), radius * scale, ink);
     }
+}
+
+/// Draws two links of a chain.
+pub(super) fn joints(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    let stroke = Stroke::new(2.5 * scale, ink);
+    for x in [-4.5, 4.5] {
+        let link = Rect::from_center_size(at + scale * vec2(x, 0.0), scale * vec2(13.0, 8.0));
+        painter.rect_stroke(link, 4.0 * scale, stroke, StrokeKind::Middle);
+    }
+}
+
+/// Draws an egg.
+pub(super) fn egg(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    let point = |step: usize| {
+        let way = Vec2::angled(TAU * step as f32 / 32.0);
+        // Narrower at the top.
+        let narrow = 7.5 + 1.5 * way.y;
+        at + scale * vec2(narrow * way.x, 10.0 * way.y)
+    };
+    let outline = (0..32).map(point).collect();
+    painter.add(Shape::closed_line(outline, Stroke::new(2.5 * scale, ink)));
 }
 
 /// Draws an upward arrow.

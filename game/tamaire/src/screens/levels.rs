@@ -259,15 +259,13 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
     let record = game.records.of(&level.id);
     let base = rect.bottom() - 26.0;
     let mut x = rect.center().x;
-    let wishes = &level.game().wish;
+    let stars = stars_of(level, record);
     let routes = level.routes();
     let gap = if routes.is_empty() { 0.0 } else { 16.0 };
-    let width = 24.0 * wishes.len() as f32 + gap + 32.0 * routes.len() as f32;
+    let width = 24.0 * stars.len() as f32 + gap + 32.0 * routes.len() as f32;
     x -= 0.5 * width;
-    for wish in wishes {
-        let name = WishName::of(wish);
-        let reached = record.is_some_and(|record| record.wishes.contains(&name));
-        let star = if reached { "★" } else { "☆" };
+    for reached in stars {
+        let star = star(reached);
         let tone = if reached { theme.accent } else { theme.faint };
         words(ui, pos2(x + 12.0, base), star, 20.0, tone);
         x += 24.0;
@@ -298,14 +296,28 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
     response
 }
 
-/// Shows a tooltip with the goals and best times of a level.
+/// Returns whether each star of a level is earned: first that of the win, then those of its goals. A playground has none.
+fn stars_of(level: &Level, record: Option<&Record>) -> Vec<bool> {
+    let has_basket = !level.game().all_baskets().is_empty();
+    let won = has_basket.then(|| record.is_some_and(Record::is_won));
+    let wishes = level.game().wish.iter().map(WishName::of);
+    let reached = wishes.map(|name| record.is_some_and(|record| record.wishes.contains(&name)));
+    won.into_iter().chain(reached).collect()
+}
+
+fn star(is_earned: bool) -> &'static str {
+    if is_earned { "★" } else { "☆" }
+}
+
+/// Shows a tooltip with the stars and best times of a level.
 fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<&Record>) {
     let (theme, said) = (game.theme(), game.words());
-    let wishes = level.game().wish.iter().map(|wish| {
-        let reached = record.is_some_and(|record| record.wishes.contains(&WishName::of(wish)));
-        let star = if reached { "★" } else { "☆" };
-        format!("{star} {}", (said.wish)(wish))
-    });
+    let wishes = level.game().wish.iter().map(|wish| (said.wish)(wish));
+    let names = std::iter::once(said.fill_basket.to_string()).chain(wishes);
+    let stars = stars_of(level, record).into_iter().map(star);
+    let wishes = stars
+        .zip(names)
+        .map(|(star, name)| format!("{star} {name}"));
     let time = |(&route, &ticks): (&Route, &u64)| {
         let seconds = ticks as f32 * fuwafuwa::DEFAULT_TICK;
         format!("{} {seconds:.1} s", (said.route)(route))

@@ -23,6 +23,7 @@ mod settings;
 mod stand;
 mod title;
 mod together;
+mod toolbox;
 mod toys;
 mod watching;
 mod widgets;
@@ -47,6 +48,7 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         Screen::Ending => ending::show(game, stage, ui),
         Screen::Play => play::show(game, ui),
         Screen::Paused => paused::show(game, ui),
+        Screen::Toolbox => toolbox::show(game, ui),
         Screen::Result => result::show(game, ui),
         Screen::Offered => offered::show(game, stage, ui),
         Screen::Settings => settings::show(game, ui),

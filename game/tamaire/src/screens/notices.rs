@@ -62,9 +62,12 @@ fn place(game: &Game, ui: &Ui) -> Rect {
     let above = match game.screen() {
         Screen::Play => hud::height(game, ui),
         // On these screens, notices are below the headline and the back button.
-        Screen::Levels | Screen::Settings | Screen::Forces | Screen::Licences | Screen::Replays => {
-            92.0
-        }
+        Screen::Levels
+        | Screen::Settings
+        | Screen::Forces
+        | Screen::Licences
+        | Screen::Replays
+        | Screen::Toolbox => 92.0,
         _ => 18.0,
     };
     let free = match game.screen() {

@@ -1,6 +1,6 @@
 //! Actions offered to a player with a single switch, drawn around the hand.
 
-use super::{hud, icons};
+use super::{hud, icons, toys};
 use crate::game::Game;
 use crate::input::ScanAction;
 use app_shell::Theme;
@@ -35,7 +35,7 @@ pub(super) fn show(game: &Game, ui: &Ui) {
     let pale = Color32::from_white_alpha(150);
     painter.circle_stroke(middle, scale * RING, Stroke::new(scale * 2.5, pale));
     let above = middle - Vec2::new(0.0, scale * RING);
-    match game.controls.scan.offer(turn.is_some()) {
+    match game.controls.scan.offer(&game.scan_actions()) {
         ScanAction::Move(way) => {
             let ahead = to_world(turn, AHEAD * way);
             let there = view.to_screen(here + ahead);
@@ -49,6 +49,11 @@ pub(super) fn show(game: &Game, ui: &Ui) {
         }
         ScanAction::Raise => sign(painter, &theme, above, scale, is_taken, icons::up),
         ScanAction::Lower => sign(painter, &theme, above, scale, is_taken, icons::down),
+        ScanAction::Tool => {
+            let icon = toys::icon(game.bout.toys.tool);
+            let is_on = is_taken || game.bout.toys.is_latched;
+            sign(painter, &theme, above, scale, is_on, icon);
+        }
         ScanAction::Rewind => sign(painter, &theme, above, scale, is_taken, icons::rewind),
         ScanAction::Pause => sign(painter, &theme, above, scale, is_taken, icons::pause),
     }

@@ -3,6 +3,7 @@
 use super::goals;
 use super::widgets::{Act, card, column, dim_background, menu, perform, title};
 use crate::game::{Game, Screen};
+use app_shell::widgets::fitted;
 use egui::{Ui, vec2};
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
@@ -11,10 +12,16 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let wanted = column(ui, 380.0, 0.5, |ui| {
         card(ui, &theme, |ui| {
             title(ui, &theme, said.paused);
+            let name = game
+                .settings
+                .language
+                .of(&game.bout.round().level().game().name);
+            let galley = fitted(ui.painter(), name, 21.0, ui.available_width(), theme.faint);
+            ui.label(galley);
             ui.add_space(6.0);
             goals::lines(ui, &theme, game);
             ui.add_space(10.0);
-            let options: [(&str, Act); 6] = [
+            let mut options: Vec<(&str, Act)> = vec![
                 (said.go_on, |game| game.go(Screen::Play)),
                 (said.again, Game::retry),
                 (said.save, Game::keep_replay),
@@ -22,6 +29,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 (said.settings, |game| game.go(Screen::Settings)),
                 (said.levels, |game| game.go(Screen::Levels)),
             ];
+            if game.is_in_playground() {
+                options.insert(1, (said.tools, |game| game.go(Screen::Toolbox)));
+            }
             menu(ui, &theme, vec2(300.0, 50.0), &options)
         })
     });

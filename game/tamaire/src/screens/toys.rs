@@ -3,26 +3,21 @@
 use super::buttons::{EDGE, GAP, HIGH, pale};
 use super::widgets::{card, slider_with};
 use super::{hud, icons};
-use crate::game::Game;
+use crate::game::{Game, Toys};
+use crate::words::Words;
 use app_shell::Theme;
 use app_shell::widgets::note_hovered;
 use egui::{
-    Color32, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, UiBuilder, Vec2, WidgetInfo,
-    pos2, vec2,
+    Color32, Painter, Pos2, Rect, RichText, Role, Sense, Shape, Stroke, Ui, UiBuilder, Vec2,
+    WidgetInfo, pos2, vec2,
 };
-use fuwafuwa::Vec3;
 use fuwafuwa_scenes::scene::Form;
 use std::f32::consts::TAU;
-use tamaire_play::Assist;
 use tamaire_play::playground::{Change, Stuff, Tool};
 use tamaire_sound::Menu;
 
 /// Shapes that can be added.
-const FORMS: [Form; 5] = [Form::Ball, Form::Box, Form::Ring, Form::Heart, Form::Flower];
-/// Tools of the hand.
-const TOOLS: [Tool; 4] = [Tool::Push, Tool::Grab, Tool::Knife, Tool::Pin];
-/// Distance of an added body from the upper end of the room [m].
-const BELOW_TOP: f32 = 0.35;
+pub(super) const FORMS: [Form; 5] = [Form::Ball, Form::Box, Form::Ring, Form::Heart, Form::Flower];
 /// Width of the card with the sliders [points].
 const CARD: f32 = 420.0;
 /// Height of the card with the sliders in its first frame [points].
@@ -39,17 +34,12 @@ enum Toy {
 }
 
 impl Toy {
-    /// Returns all buttons, in order. In a level in which nothing tears there is no knife.
+    /// Returns all buttons, in order.
     fn all(game: &Game) -> Vec<Self> {
-        let assists = &game.bout.round().level().game().assists;
-        let can_cut = !assists.contains(&Assist::Unbreakable);
-        let tools = TOOLS
-            .into_iter()
-            .filter(|&tool| can_cut || tool != Tool::Knife);
         let stuffs = Stuff::ALL.map(Self::Stuff).into_iter();
         stuffs
             .chain(FORMS.map(Self::Form))
-            .chain(tools.map(Self::Tool))
+            .chain(game.tools().map(Self::Tool))
             .chain([Self::Sliders, Self::Clear])
             .collect()
     }
@@ -97,6 +87,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
         if response.clicked() {
             press(game, toy);
         }
+        response.on_hover_text(RichText::new(toy.name(game)).size(17.0));
     }
     if game.bout.toys.has_sliders {
         is_over |= sliders(game, ui, scale);
@@ -144,34 +135,11 @@ fn press(game: &mut Game, toy: Toy) {
     game.blip(Menu::Confirm);
     match toy {
         Toy::Stuff(stuff) => game.bout.toys.stuff = stuff,
-        Toy::Form(form) => {
-            let at = place_to_add(game);
-            let stuff = game.bout.toys.stuff;
-            game.change_playground(Change::add(form, stuff, at));
-        }
-        Toy::Tool(tool) => {
-            game.bout.toys.tool = tool;
-            game.change_playground(Change::Tool(tool));
-        }
+        Toy::Form(form) => game.add_body(form),
+        Toy::Tool(tool) => game.choose_tool(tool),
         Toy::Sliders => game.bout.toys.has_sliders ^= true,
         Toy::Clear => game.change_playground(Change::Clear),
     }
-}
-
-/// Returns where a body is added [m]: below the upper end of the room, on the side away from the hand.
-fn place_to_add(game: &Game) -> Vec3 {
-    let round = game.bout.round();
-    let [low, high] = round.level().arena();
-    let middle = 0.5 * (low + high);
-    let side = if round.hands()[0].position.x < middle.x {
-        0.25
-    } else {
-        -0.25
-    };
-    // Neighbours lie a little apart, so that towers do not stand still.
-    let apart = 0.03 * (round.ticks() % 7) as f32;
-    let x = middle.x + side * (high.x - low.x) + apart;
-    Vec3::new(x, high.y - BELOW_TOP, middle.z)
 }
 
 /// Shows the sliders. Returns whether the mouse is over them.
@@ -189,35 +157,25 @@ fn sliders(game: &mut Game, ui: &mut Ui, scale: f32) -> bool {
     let mut child = ui.new_child(UiBuilder::new().max_rect(place));
     card(&mut child, &theme, |ui| {
         ui.set_width(ui.available_width());
-        let mut show = |name: &str, value: &mut f32, range: [f32; 3], digits: usize| {
-            slider_with(ui, &theme, name, value, range, |value| {
-                format!("{value:.digits$}")
-            });
-        };
-        show(said.gravity, &mut toys.gravity, [0.0, 20.0, 0.5], 1);
-        show(said.air, &mut toys.air, [0.0, 5.0, 0.1], 1);
-        show(said.hand_size, &mut toys.hand, [3.0, 30.0, 1.0], 0);
+        air(ui, &theme, said, &mut toys);
     });
     let shown = child.min_rect();
     game.controls.covers.push(shown);
     ui.data_mut(|data| data.insert_temp(id, shown.height()));
-    let before = std::mem::replace(&mut game.bout.toys, toys);
-    let unit = |value: f32, step: f32| (value / step).round() as u8;
-    let changes = [
-        (
-            before.gravity != toys.gravity,
-            Change::Gravity(unit(toys.gravity, 0.5)),
-        ),
-        (before.air != toys.air, Change::Air(unit(toys.air, 0.1))),
-        (
-            before.hand != toys.hand,
-            Change::HandSize(unit(toys.hand, 1.0)),
-        ),
-    ];
-    for (_, change) in changes.into_iter().filter(|(is_changed, _)| *is_changed) {
-        game.change_playground(change);
-    }
+    game.choose_air(toys);
     ui.rect_contains_pointer(shown)
+}
+
+/// Shows the sliders for gravity, air and the size of the hand.
+pub(super) fn air(ui: &mut Ui, theme: &Theme, said: &Words, toys: &mut Toys) {
+    let mut show = |name: &str, value: &mut f32, range: [f32; 3], digits: usize| {
+        slider_with(ui, theme, name, value, range, |value| {
+            format!("{value:.digits$}")
+        });
+    };
+    show(said.gravity, &mut toys.gravity, [0.0, 20.0, 0.5], 1);
+    show(said.air, &mut toys.air, [0.0, 5.0, 0.1], 1);
+    show(said.hand_size, &mut toys.hand, [3.0, 30.0, 1.0], 0);
 }
 
 /// Draws a button.
@@ -244,7 +202,7 @@ fn draw(game: &Game, painter: &Painter, toy: Toy, rect: Rect, is_hovered: bool) 
             let fill = colour(game, game.bout.toys.stuff);
             draw_form(painter, &theme, form, middle, scale, fill);
         }
-        Toy::Tool(tool) => draw_tool_icon(painter, tool, middle, scale, theme.ink),
+        Toy::Tool(tool) => icon(tool)(painter, middle, scale, theme.ink),
         Toy::Sliders => icons::sliders(painter, middle, scale, theme.ink),
         Toy::Clear => icons::broom(painter, middle, scale, theme.ink),
     }
@@ -302,12 +260,13 @@ fn draw_form(painter: &Painter, theme: &Theme, form: Form, at: Pos2, scale: f32,
     }
 }
 
-fn draw_tool_icon(painter: &Painter, tool: Tool, at: Pos2, scale: f32, ink: Color32) {
+/// Returns the function that draws the icon of a tool.
+pub(super) fn icon(tool: Tool) -> fn(&Painter, Pos2, f32, Color32) {
     match tool {
-        Tool::Push => icons::hand(painter, at, scale, ink),
-        Tool::Grab => icons::grab(painter, at, scale, ink),
-        Tool::Knife => icons::knife(painter, at, scale, ink),
-        Tool::Pin => icons::pin(painter, at, scale, ink),
+        Tool::Push => icons::hand,
+        Tool::Grab => icons::grab,
+        Tool::Knife => icons::knife,
+        Tool::Pin => icons::pin,
     }
 }
 
@@ -321,5 +280,5 @@ fn draw_tool(game: &Game, painter: &Painter) {
     let at = view.to_screen(hand.position);
     let radius = view.scale_at(hand.position) * hand.radius;
     let scale = (radius / 12.0).max(0.8);
-    draw_tool_icon(painter, tool, at, scale, Color32::WHITE);
+    icon(tool)(painter, at, scale, Color32::WHITE);
 }

@@ -2,7 +2,7 @@
 
 use super::Language;
 use super::Words;
-use super::{percent_below, percent_of_limit, tenths_above};
+use super::{percent_below, percent_lost, percent_of_limit, tenths_above};
 use crate::input::{Action, InputMethod};
 use crate::settings::Quality;
 use force_feedback::{Ability, Stop};
@@ -45,7 +45,7 @@ pub(super) const WORDS: Words = Words {
         parts.extend(wish.seconds.map(|most| format!("within {most} s")));
         parts.extend(
             wish.kept
-                .map(|least| format!("keep at least {} %", percent_of_limit(least))),
+                .map(|least| format!("tear off at most {} %", percent_of_limit(1.0 - least))),
         );
         parts.extend(match (wish.pieces, wish.max_pieces) {
             (None, None) => None,
@@ -60,7 +60,7 @@ pub(super) const WORDS: Words = Words {
             Joints::Broken => "break a joint".to_string(),
         }));
         if !wish.whole.is_empty() {
-            parts.push("let the fragile one stay whole".to_string());
+            parts.push("do not break what is fragile".to_string());
         }
         parts.extend(
             wish.inside
@@ -71,7 +71,7 @@ pub(super) const WORDS: Words = Words {
     summary: |outcome| {
         [
             ("Time", format!("{:.1} s", tenths_above(outcome.seconds()))),
-            ("Left of it", format!("{} %", percent_below(outcome.kept))),
+            ("Torn off", format!("{} %", percent_lost(outcome))),
             (
                 "In the basket",
                 format!("{} %", percent_below(outcome.inside)),
@@ -81,6 +81,7 @@ pub(super) const WORDS: Words = Words {
     },
     new_best: "New best!",
     let_go: "Let go!",
+    fill_basket: "fill the basket",
     hopeless: "Not enough of the body is left to win.",
     missed: |wish| {
         format!(
@@ -312,7 +313,7 @@ pub(super) const WORDS: Words = Words {
         parts.extend(wish.seconds.map(|most| format!("{most} s")));
         parts.extend(
             wish.kept
-                .map(|least| format!("keep {} %", percent_of_limit(least))),
+                .map(|least| format!("≤ {} % torn off", percent_of_limit(1.0 - least))),
         );
         parts.extend(match (wish.pieces, wish.max_pieces) {
             (None, None) => None,
@@ -327,7 +328,7 @@ pub(super) const WORDS: Words = Words {
             Joints::Broken => "joint broken".to_string(),
         }));
         if !wish.whole.is_empty() {
-            parts.push("fragile".to_string());
+            parts.push("nothing fragile broken".to_string());
         }
         parts.extend(
             wish.inside
@@ -346,10 +347,9 @@ pub(super) const WORDS: Words = Words {
             missed
                 .seconds
                 .map(|_| format!("{:.1} s", tenths_above(outcome.seconds()))),
-            missed.kept.map(|least| {
-                let found = percent_below(outcome.kept);
-                format!("{found} of {} %", percent_of_limit(least))
-            }),
+            missed
+                .kept
+                .map(|_| format!("{} % torn off", percent_lost(outcome))),
             missed
                 .pieces
                 .map(|least| format!("{} of {least}", outcome.pieces)),
@@ -441,10 +441,15 @@ pub(super) const WORDS: Words = Words {
     },
     sliders: "Gravity, air, hand",
     clear: "Clear the room",
+    tools: "Tools",
+    material: "Material",
+    hand_tool: "Hand",
     gravity: "Gravity [m/s²]",
     air: "Air drag [1/s]",
     hand_size: "Hand radius [cm]",
     room_is_full: "The room is full.",
+    too_many_pins: "There are too many pins. Clear the room, or go back in time.",
+    too_many_changes: "This round has too many changes. Restart to go on.",
     first_move: "The ghost shows a first move.",
     one_hand: "This level has only one hand, so one player plays.",
 };

@@ -2,7 +2,7 @@
 
 use super::Language;
 use super::Words;
-use super::{percent_below, percent_of_limit, tenths_above};
+use super::{percent_below, percent_lost, percent_of_limit, tenths_above};
 use crate::input::{Action, InputMethod};
 use crate::settings::Quality;
 use force_feedback::{Ability, Stop};
@@ -47,7 +47,7 @@ pub(super) const WORDS: Words = Words {
         parts.extend(wish.seconds.map(|most| format!("{most}秒以内")));
         parts.extend(
             wish.kept
-                .map(|least| format!("{}％以上のこす", percent_of_limit(least))),
+                .map(|least| format!("ちぎるのは {}％まで", percent_of_limit(1.0 - least))),
         );
         parts.extend(match (wish.pieces, wish.max_pieces) {
             (None, None) => None,
@@ -76,13 +76,14 @@ pub(super) const WORDS: Words = Words {
                 "タイム",
                 format!("{:.1}秒", tenths_above(outcome.seconds())),
             ),
-            ("のこり", format!("{}％", percent_below(outcome.kept))),
+            ("ちぎれた", format!("{}％", percent_lost(outcome))),
             ("かごの中", format!("{}％", percent_below(outcome.inside))),
             ("かけら", format!("{}こ", outcome.pieces)),
         ]
     },
     new_best: "新記録！",
     let_go: "手をはなして！",
+    fill_basket: "かごに 入れる",
     missed: |wish| {
         format!(
             "もう クリアできません：{}",
@@ -313,7 +314,7 @@ pub(super) const WORDS: Words = Words {
         parts.extend(wish.seconds.map(|most| format!("{most}秒")));
         parts.extend(
             wish.kept
-                .map(|least| format!("{}％のこす", percent_of_limit(least))),
+                .map(|least| format!("ちぎるのは{}％まで", percent_of_limit(1.0 - least))),
         );
         parts.extend(match (wish.pieces, wish.max_pieces) {
             (None, None) => None,
@@ -349,7 +350,7 @@ pub(super) const WORDS: Words = Words {
                 .map(|_| format!("{:.1}秒だった", tenths_above(outcome.seconds()))),
             missed
                 .kept
-                .map(|_| format!("{}％だった", percent_below(outcome.kept))),
+                .map(|_| format!("{}％ ちぎれた", percent_lost(outcome))),
             { missed.pieces.or(missed.max_pieces) }.map(|_| format!("{}こだった", outcome.pieces)),
             missed.joints.map(|joints| match joints {
                 Joints::Whole => "つなぎ目が切れた".to_string(),
@@ -443,10 +444,15 @@ pub(super) const WORDS: Words = Words {
     },
     sliders: "重力・空気・手",
     clear: "ぜんぶ かたづける",
+    tools: "どうぐ",
+    material: "そざい",
+    hand_tool: "手",
     gravity: "重力［m/s²］",
     air: "空気抵抗［1/s］",
     hand_size: "手の半径［cm］",
     room_is_full: "部屋が いっぱいです。",
+    too_many_pins: "ピンが 多すぎます。かたづけるか、時間をもどしてね。",
+    too_many_changes: "へんこうが 多すぎます。さいしょから やりなおしてね。",
     first_move: "おばけが さいしょの うごきを みせるよ。",
     one_hand: "このステージの手は ひとつだけなので、ひとりであそびます。",
 };

@@ -11,7 +11,7 @@ pub use said::Words;
 pub use stand::StandWords;
 
 use serde::{Deserialize, Serialize};
-use tamaire_play::LocalizedText as Name;
+use tamaire_play::{LocalizedText as Name, Outcome};
 
 /// A language of the game.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -76,6 +76,11 @@ fn percent_below(share: f32) -> u32 {
     (100.0 * share + 1e-4).floor() as u32
 }
 
+/// Returns the share of the mass that was torn off, in whole percent, rounded up.
+fn percent_lost(outcome: &Outcome) -> u32 {
+    100 - percent_below(outcome.kept.min(1.0))
+}
+
 /// Returns a limit in percent with all of its digits, for example 62.5 for 0.625.
 fn percent_of_limit(share: f32) -> f64 {
     // Rounding removes the error of single precision: 0.29 × 100 is less than 29.
@@ -90,7 +95,7 @@ fn tenths_above(seconds: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tamaire_play::{Outcome, Route, Wish};
+    use tamaire_play::{Route, Wish};
 
     #[test]
     fn near_miss_names_only_missed_figures_and_never_shows_the_limit() {
@@ -118,8 +123,8 @@ mod tests {
             ),
             (
                 wish(None, Some(0.9), None),
-                Some("89 of 90 %"),
-                Some("89％だった"),
+                Some("11 % torn off"),
+                Some("11％ ちぎれた"),
             ),
             (wish(None, None, Some(5)), Some("3 of 5"), Some("3こだった")),
             (wish(Some(21.0), Some(0.5), Some(3)), None, None),
@@ -135,9 +140,12 @@ mod tests {
         let kept = wish(None, Some(0.625), None);
         assert_eq!(
             (Language::English.words().wish)(&kept),
-            "keep at least 62.5 %"
+            "tear off at most 37.5 %"
         );
-        assert_eq!((Language::Japanese.words().goal)(&kept), "62.5％のこす");
+        assert_eq!(
+            (Language::Japanese.words().goal)(&kept),
+            "ちぎるのは37.5％まで"
+        );
         assert_eq!((Language::English.words().share)(0.5999, 0.6), "59 / 60 %");
     }
 
@@ -154,8 +162,8 @@ mod tests {
             torn: 0,
         };
         let values = |language: Language| (language.words().summary)(&outcome).map(|row| row.1);
-        let english = ["20.1 s", "89 %", "59 %", "3"].map(String::from);
-        let japanese = ["20.1秒", "89％", "59％", "3こ"].map(String::from);
+        let english = ["20.1 s", "11 %", "59 %", "3"].map(String::from);
+        let japanese = ["20.1秒", "11％", "59％", "3こ"].map(String::from);
         assert_eq!(values(Language::English), english);
         assert_eq!(values(Language::Japanese), japanese);
     }

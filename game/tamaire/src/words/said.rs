@@ -51,6 +51,8 @@ pub struct Words {
     /// Hint in a hopeless round: how to let time run back, from the name of the key.
     pub hold_to_rewind: fn(&str) -> String,
     pub let_go: &'static str,
+    /// Name of the star for the win.
+    pub fill_basket: &'static str,
     pub watch: &'static str,
     pub race: &'static str,
     pub save: &'static str,
@@ -187,10 +189,18 @@ pub struct Words {
     pub tool: fn(Tool) -> &'static str,
     pub sliders: &'static str,
     pub clear: &'static str,
+    /// Page with the tools of a playground.
+    pub tools: &'static str,
+    /// Name of the choice of a material.
+    pub material: &'static str,
+    /// Name of the choice of a tool.
+    pub hand_tool: &'static str,
     pub gravity: &'static str,
     pub air: &'static str,
     pub hand_size: &'static str,
     pub room_is_full: &'static str,
+    pub too_many_pins: &'static str,
+    pub too_many_changes: &'static str,
     /// Notice when a ghost shows the first move of the level.
     pub first_move: &'static str,
     /// Missing keys of one of two players at a keyboard.

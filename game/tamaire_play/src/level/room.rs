@@ -1,5 +1,6 @@
 //! Checks that a level can be played from its start.
 
+use super::Level;
 use fuwafuwa::inspect::is_hand;
 use fuwafuwa::{Dim, DimVector, SoftBody, Vec3, World};
 
@@ -30,6 +31,25 @@ pub(super) fn check<D: Dim>(
                 index + 1
             );
             Err(("body", reason))
+        }
+    }
+}
+
+/// Checks that the first move that a level shows stays in the arena. If not, returns the field and the expected value.
+pub(super) fn check_hint(level: &Level) -> Result<(), (&'static str, String)> {
+    let [low, high] = level.arena();
+    let is_out = |point: &[f32; 4]| {
+        let axes = 0..usize::from(level.scene().dim);
+        { axes }.any(|axis| !(low[axis]..=high[axis]).contains(&point[axis + 1]))
+    };
+    match level.game().hint.iter().position(is_out) {
+        None => Ok(()),
+        Some(index) => {
+            let reason = format!(
+                "expected positions in the view; point {} is outside",
+                index + 1
+            );
+            Err(("game.hint", reason))
         }
     }
 }
