@@ -573,6 +573,15 @@ mod tests {
     }
 
     #[test]
+    fn level_with_a_hint_outside_the_view_is_rejected() {
+        let (_, twins) = NAMED[3];
+        let hint = "game.hint=[[0.0, 0.0, 0.0, 0.0], [1.0, 5.0, 0.0, 0.0]]";
+        let refused = refusal("twins", twins, &[hint]);
+        let expected = "twins: game.hint: expected positions in the view; point 2 is outside";
+        assert_eq!(refused.as_deref(), Some(expected));
+    }
+
+    #[test]
     fn hash_of_an_unchanged_level_stays_the_same() {
         // Hashes in recordings and logbooks. Pudding has another toughness than in version 0.2.0.
         for (id, hash) in [

@@ -690,7 +690,7 @@ fn wrong_colours_are_named() {
     );
     let missing = refused("keep_colours = true\nmaterial = 7");
     assert!(
-        missing.contains("material: expected 1 to 1, found 7"),
+        missing.contains("material: expected 1, found 7"),
         "{missing}"
     );
     let text = "dim = 2\n[[body]]\nshape = \"ball\"\nn = 8\nkeep_colours = true\n";

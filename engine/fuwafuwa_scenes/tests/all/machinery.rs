@@ -94,6 +94,19 @@ fn switch_moves_a_door_opens_a_joint_and_stays_if_told() {
 }
 
 #[test]
+fn switch_with_bodies_is_on_only_for_them() {
+    let second = BALL.replace("at = [-0.1", "at = [4.9");
+    for (bodies, expected) in [("[1]", true), ("[2]", false), ("[1, 2]", true)] {
+        let switch = format!(
+            "[[switch]]\nball = {{ centre = [0.0, 0.0, 0.0], radius = 0.3 }}\nbodies = {bodies}\n"
+        );
+        let (_, mut world, mut machinery) = built(&[BALL, &switch, &second]);
+        run(&mut world, &mut machinery, 2);
+        assert_eq!(machinery.switches().next().unwrap().1, expected, "{bodies}");
+    }
+}
+
+#[test]
 fn field_accelerates_what_is_in_it() {
     let field = "[[field]]\nbox = { centre = [0.0, 0.0, 0.0], half = [9.0, 9.0, 0.0] }\n\
                  acceleration = [0.0, 2.0, 0.0]\n";
@@ -160,6 +173,15 @@ fn mistakes_name_line_and_field() {
         (
             "[[switch]]\nmass = 1.0\n".into(),
             "expected either a box or a ball",
+        ),
+        (
+            "[[switch]]\nball = { centre = [0.0, 0.0, 0.0], radius = 0.3 }\nbodies = [3]\n".into(),
+            "expected nothing, because the list is empty, found 3",
+        ),
+        (
+            "[[switch]]\nball = { centre = [0.0, 0.0, 0.0], radius = 0.3 }\nby = \"hand\"\nbodies = [1]\n"
+                .into(),
+            "allowed only with by = \"body\"",
         ),
         (
             "[[field]]\nstrength = 1.0\n".into(),

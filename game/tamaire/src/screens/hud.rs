@@ -197,7 +197,9 @@ fn draw_lesson(ui: &Ui, screen: Rect, scale: f32, game: &Game) {
 fn draw_name(ui: &Ui, free: Rect, scale: f32, game: &Game) -> f32 {
     let round = game.bout.round();
     let left = NAME.saturating_sub(round.ticks()) as f32;
-    if left == 0.0 || game.bout.session.is_rewinding() || game.bout.session.is_winding() {
+    let session = &game.bout.session;
+    let is_busy = session.is_rewinding() || session.is_winding() || game.bout.elements.is_some();
+    if left == 0.0 || is_busy {
         return free.top();
     }
     let strength = match game.settings.reduced_motion {

@@ -1,5 +1,6 @@
 //! Screen for choosing a level.
 
+use super::buttons::pale;
 use super::confirmation::{is_pending, set_pending};
 use super::icons;
 use super::widgets::{dim_background, header_to_open, page, page_rect, words};
@@ -11,9 +12,10 @@ use crate::words::Language;
 use app_shell::Theme;
 use app_shell::widgets::{ButtonStyle, button, fitted, focus_ring, highlight, is_on, plain_button};
 use egui::{
-    Color32, Rect, Response, RichText, Role, Sense, Stroke, Tooltip, Ui, Vec2, WidgetInfo, pos2,
-    vec2,
+    Color32, FontId, Painter, Rect, Response, RichText, Role, Sense, Stroke, Tooltip, Ui, Vec2,
+    WidgetInfo, pos2, vec2,
 };
+use std::collections::BTreeMap;
 use tamaire_play::level::CHAPTERS;
 use tamaire_play::{Level, Route};
 use tamaire_sound::Menu;
@@ -282,6 +284,7 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
         x += 32.0;
     }
     if let Some(record) = record {
+        draw_best_time(painter, &theme, map, record);
         let at = map.right_top() + vec2(-14.0, 14.0);
         let is_unaided = !record.best.is_empty() || !record.best_rewound.is_empty();
         let tone = if is_unaided { theme.good } else { theme.faint };
@@ -294,6 +297,27 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
         explain(ui, game, &response, level, record);
     }
     response
+}
+
+/// Draws the shortest time of a record in the lower right corner of the thumbnail, in grey if only aided rounds were won.
+fn draw_best_time(painter: &Painter, theme: &Theme, map: Rect, record: &Record) {
+    let shortest = |best: &BTreeMap<Route, u64>| best.values().min().copied();
+    let unaided = shortest(&record.best).or_else(|| shortest(&record.best_rewound));
+    let Some(ticks) = unaided.or_else(|| shortest(&record.best_assisted)) else {
+        return;
+    };
+    let seconds = ticks as f32 * fuwafuwa::DEFAULT_TICK;
+    let ink = if unaided.is_some() {
+        theme.ink
+    } else {
+        theme.faint
+    };
+    let font = FontId::proportional(16.0);
+    let galley = painter.layout_no_wrap(format!("{seconds:.1} s"), font, ink);
+    let size = galley.size() + vec2(16.0, 6.0);
+    let place = Rect::from_min_size(map.right_bottom() - size - vec2(6.0, 6.0), size);
+    painter.rect_filled(place, 0.5 * size.y, pale(theme));
+    painter.galley(place.min + vec2(8.0, 3.0), galley, ink);
 }
 
 /// Returns whether each star of a level is earned: first that of the win, then those of its goals. A playground has none.

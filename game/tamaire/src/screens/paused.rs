@@ -18,9 +18,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 .of(&game.bout.round().level().game().name);
             let galley = fitted(ui.painter(), name, 21.0, ui.available_width(), theme.faint);
             ui.label(galley);
-            ui.add_space(6.0);
             goals::lines(ui, &theme, game);
-            ui.add_space(10.0);
+            ui.add_space(6.0);
             let mut options: Vec<(&str, Act)> = vec![
                 (said.go_on, |game| game.go(Screen::Play)),
                 (said.again, Game::retry),
@@ -32,7 +31,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             if game.is_in_playground() {
                 options.insert(1, (said.tools, |game| game.go(Screen::Toolbox)));
             }
-            menu(ui, &theme, vec2(300.0, 50.0), &options)
+            menu(ui, &theme, vec2(300.0, 46.0), &options)
         })
     });
     perform(game, ui, wanted, |game| game.go(Screen::Play));

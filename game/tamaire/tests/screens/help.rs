@@ -2,11 +2,13 @@
 
 use crate::window::*;
 use egui::Key;
+use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use std::collections::BTreeSet;
 use tamaire::game::Screen;
 use tamaire::input::{Action, ScanAction, Scanning};
 use tamaire::platform::Files;
+use tamaire_play::playground::Tool;
 use tamaire_play::{Assist, Route};
 
 #[test]
@@ -49,9 +51,13 @@ fn assisted_wins_are_recorded_separately() {
 
 /// Waits until the button with this name has the focus in the scanning cycle, then presses the switch.
 fn choose(window: &mut Window, name: &str) {
+    choose_as(window, Role::Button, name);
+}
+
+fn choose_as(window: &mut Window, role: Role, name: &str) {
     let patience = 60 * 60;
     for _ in 0..patience {
-        if button(window, name).is_focused() {
+        if window.get_by_role_and_label(role, name).is_focused() {
             tap(window);
             return;
         }
@@ -71,13 +77,33 @@ fn tap(window: &mut Window) {
 fn wait_for(window: &mut Window, is_wanted: impl Fn(ScanAction) -> bool) {
     for _ in 0..60 * 60 {
         let game = game(window);
-        let is_space = game.bout.turn().is_some();
-        if is_wanted(game.controls.scan.offer(is_space)) {
+        if is_wanted(game.controls.scan.offer(&game.scan_actions())) {
             return;
         }
         frames(window, 1);
     }
     panic!("the action is never offered on {:?}", screen(window));
+}
+
+#[test]
+fn single_switch_chooses_and_presses_tools_of_a_playground() {
+    let mut window = window(Files::nowhere());
+    game(&mut window).settings.scanning = Scanning::Quick;
+    start(&mut window, "sandbox");
+    wait_for(&mut window, |offer| offer == ScanAction::Pause);
+    tap(&mut window);
+    choose(&mut window, "Tools");
+    assert_eq!(screen(&window), Screen::Toolbox);
+    choose_as(&mut window, Role::RadioButton, "Hand: Grab: press and hold");
+    choose(&mut window, "Back");
+    choose(&mut window, "Resume");
+    assert_eq!(game(&mut window).bout.round().tool(), (Tool::Grab, false));
+    for is_pressed in [true, false] {
+        wait_for(&mut window, |offer| offer == ScanAction::Tool);
+        tap(&mut window);
+        let tool = game(&mut window).bout.round().tool();
+        assert_eq!(tool, (Tool::Grab, is_pressed));
+    }
 }
 
 #[test]
@@ -115,7 +141,8 @@ fn single_switch_can_win_and_continue() {
     // The hand moves away, so that the body comes to rest in the basket, unless that happens before.
     let is_won = |window: &mut Window| game(window).bout.round().progress().outcome.is_some();
     for _ in 0..600 {
-        let offer = game(&mut window).controls.scan.offer(false);
+        let game = game(&mut window);
+        let offer = game.controls.scan.offer(&game.scan_actions());
         let is_left = matches!(offer, ScanAction::Move(way) if way.x < -0.99);
         if is_left || is_won(&mut window) {
             break;

@@ -3,7 +3,7 @@
 use crate::window::*;
 use egui::{pos2, vec2};
 use egui_kittest::kittest::Queryable;
-use tamaire::game::Game;
+use tamaire::game::{Game, Screen};
 use tamaire::platform::Files;
 use tamaire_play::AnyRound;
 use tamaire_play::playground::{Change, Tool};
@@ -30,6 +30,43 @@ fn shapes_are_added_and_cleared_by_buttons() {
         frames(&mut window, 4);
         assert_eq!(bodies(game(&mut window)), 0, "{level}");
     }
+}
+
+#[test]
+fn tools_are_on_a_page_that_keys_reach() {
+    let mut window = open(Files::nowhere(), vec2(1000.0, 640.0), 1.0);
+    start(&mut window, "sandbox");
+    let before = bodies(game(&mut window));
+    press(&mut window, egui::Key::Escape);
+    for name in [
+        "Tools",
+        "Material: Stone",
+        "Add a heart",
+        "Hand: Pin: press",
+    ] {
+        for _ in 0..40 {
+            if window.get_by_label(name).is_focused() {
+                break;
+            }
+            press(&mut window, egui::Key::Tab);
+        }
+        assert!(window.get_by_label(name).is_focused(), "{name}");
+        press(&mut window, egui::Key::Enter);
+    }
+    assert_eq!(game(&mut window).screen(), Screen::Toolbox);
+    press(&mut window, egui::Key::Escape);
+    press(&mut window, egui::Key::Escape);
+    frames(&mut window, 4);
+    assert_eq!(bodies(game(&mut window)), before + 1);
+    assert_eq!(game(&mut window).bout.round().tool().0, Tool::Pin);
+}
+
+#[test]
+fn name_of_the_level_is_shown_first_and_in_the_pause_menu() {
+    let mut window = open(Files::nowhere(), vec2(1000.0, 640.0), 1.0);
+    start(&mut window, "classic");
+    press(&mut window, egui::Key::Escape);
+    window.get_by_label("Classic");
 }
 
 #[test]

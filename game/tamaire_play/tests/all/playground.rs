@@ -188,6 +188,24 @@ fn pin_holds_a_body_up_against_gravity() {
 }
 
 #[test]
+fn pins_are_refused_when_there_are_too_many() {
+    let mut round = with_one_body("sandbox", Stuff::Rubber);
+    round.change(Change::Tool(Tool::Pin)).unwrap();
+    let at = centre(&round);
+    go(&mut round, at, 60);
+    let mut pins = 0;
+    let refused = loop {
+        match round.change(Change::Press(true)) {
+            Ok(()) => pins += 1,
+            Err(refused) => break refused,
+        }
+        round.step(InputFrame::default());
+        assert!(pins < 1000, "pins have a limit");
+    };
+    assert_eq!((refused, pins), (ChangeError::TooManyPins, 200));
+}
+
+#[test]
 fn hand_grows_and_air_brakes() {
     let mut round = begin("sandbox");
     round.change(Change::HandSize(25)).unwrap();
