@@ -23,6 +23,8 @@ pub struct Palette {
     pub bar: Colour,
     /// Rigid bodies that let bodies with the default layers through, such as fences for hands.
     pub glass: Colour,
+    /// Rigid bodies that let hands through and stop bodies.
+    pub curtain: Colour,
     /// Glow of the basket.
     pub basket: Colour,
     /// Colours of bodies by material number, starting at number 1. The list repeats after its end.
@@ -47,6 +49,7 @@ impl Palette {
             frame: rgb(0x7fb7b4),
             bar: rgb(0xe6b877),
             glass: rgb(0x7fb2d6),
+            curtain: rgb(0x5a6ca6),
             basket: rgb(0xffbe3d),
             materials: [
                 0xff8d78, 0x9c4f93, 0xffb84d, 0x8fc46a, 0x6aa9d8, 0xd98fd0, 0xc49a6c, 0xf2e3c9,
@@ -70,6 +73,7 @@ impl Palette {
             frame: rgb(0x66788a),
             bar: rgb(0xb9b2a3),
             glass: rgb(0x7fb2d6),
+            curtain: rgb(0x5a6ca6),
             basket: rgb(0xf0e442),
             materials: [
                 0xe69f00, 0x7a3b00, 0xcc79a7, 0x009e73, 0x56b4e9, 0xd55e00, 0x999999, 0xf0e442,

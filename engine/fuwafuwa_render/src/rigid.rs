@@ -22,7 +22,8 @@ pub struct RigidInstance {
     pub radius: f32,
     /// 0 = capsule, 1 = box, 2 = ball.
     pub form: f32,
-    /// Player number of a hand, or fill level of a basket. Of a bar: 1 if it is glass, otherwise 0.
+    /// Player number of a hand, or fill level of a basket. Of a bar: 0 if it is wood, 1 if it is glass, 2 if it is a
+    /// curtain.
     pub number: f32,
     /// Red, green, blue.
     pub colour: Colour,
@@ -72,11 +73,12 @@ impl RigidShapes {
             if let Shape::HalfSpace { normal, offset } = shape {
                 self.walls.push([normal.x, normal.y, offset, 0.0]);
             }
-            let (colour, glass) = match is_glass(obstacle) {
-                true => (palette.glass, 1.0),
-                false => (palette.bar, 0.0),
+            let (colour, stuff) = match obstacle {
+                _ if is_glass(obstacle) => (palette.glass, 1.0),
+                _ if is_curtain(world, obstacle) => (palette.curtain, 2.0),
+                _ => (palette.bar, 0.0),
             };
-            self.shapes.extend(instance(shape, colour, glass));
+            self.shapes.extend(instance(shape, colour, stuff));
         }
         self.walls.truncate(MAX_WALLS);
         self.bar_count = self.shapes.len() as u32;
@@ -102,6 +104,13 @@ impl RigidShapes {
 /// Returns whether a rigid body is drawn as glass: bodies with the default layers pass through it.
 pub fn is_glass<D: Dim>(body: RigidBodyRef<'_, D>) -> bool {
     !body.layers().meet(Layers::default())
+}
+
+/// Returns whether a rigid body is drawn as a curtain: hands that touch anything pass through it.
+pub fn is_curtain<D: Dim>(world: &World<D>, body: RigidBodyRef<'_, D>) -> bool {
+    let mut layers = hands(world).map(|(_, hand)| hand.layers());
+    let first = layers.find(|layers| layers.filters != 0);
+    first.is_some_and(|hand| !hand.meet(body.layers()))
 }
 
 /// Returns the rectangle instance of a bounded shape, or `None` for a half-space.
@@ -138,10 +147,17 @@ mod tests {
         let mut world = World::<Dim2>::new(WorldConfig::default()).unwrap();
         let floor = Shape::half_space(Vec2::Y, Vec2::new(0.0, -2.0));
         let bar = Shape::capsule(Vec2::ZERO, Vec2::X, 0.1);
-        let hand = RigidBody::coupled(Shape::ball(0.2));
+        let hand = RigidBody::coupled(Shape::ball(0.2)).with_layers(Layers {
+            memberships: 2,
+            ..Layers::default()
+        });
         let fence = Layers {
             memberships: 1,
             filters: 2,
+        };
+        let curtain = Layers {
+            memberships: 1,
+            filters: 1,
         };
         let fallen = RigidBody::dynamic(Shape::cuboid(Vec2::new(0.3, 0.2)), 1.0);
         for body in [
@@ -150,6 +166,7 @@ mod tests {
             hand.at(Vec2::new(0.0, 3.0)),
             hand.at(Vec2::new(1.0, 3.0)),
             RigidBody::fixed(bar).with_layers(fence),
+            RigidBody::fixed(bar).with_layers(curtain),
             fallen.rotated(Rotation::in_plane(0.5)),
         ] {
             world.add_rigid_body(body).unwrap();
@@ -172,12 +189,12 @@ mod tests {
         assert_eq!(rigid.walls, [[0.0, 1.0, -2.0, 0.0]]);
         assert_eq!(
             (rigid.bar_count, rigid.hand_count, rigid.shapes.len()),
-            (3, 2, 6)
+            (4, 2, 7)
         );
-        let glass: Vec<f32> = rigid.shapes[..3].iter().map(|bar| bar.number).collect();
-        assert_eq!(glass, [0.0, 1.0, 0.0]);
-        assert!((rigid.shapes[2].radius - 0.5).abs() < 1e-5);
-        assert_ne!(rigid.shapes[3].colour, rigid.shapes[4].colour);
-        assert_eq!((rigid.shapes[5].number, rigid.dots.len()), (0.5, 1));
+        let stuff: Vec<f32> = rigid.shapes[..4].iter().map(|bar| bar.number).collect();
+        assert_eq!(stuff, [0.0, 1.0, 2.0, 0.0]);
+        assert!((rigid.shapes[3].radius - 0.5).abs() < 1e-5);
+        assert_ne!(rigid.shapes[4].colour, rigid.shapes[5].colour);
+        assert_eq!((rigid.shapes[6].number, rigid.dots.len()), (0.5, 1));
     }
 }

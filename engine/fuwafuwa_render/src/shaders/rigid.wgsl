@@ -84,7 +84,8 @@ fn shadow(in: ShapeCorner) -> @location(0) vec4f {
 fn bar(in: ShapeCorner) -> @location(0) vec4f {
     let inside = -distance_to(in.at, in);
     // Glass has a clear inside and a visible edge.
-    let clear = in.form.z * mix(0.35, 0.78, smoothstep(0.0, 0.03, inside));
+    let glass = select(0.0, 1.0, in.form.z == 1.0);
+    let clear = glass * mix(0.35, 0.78, smoothstep(0.0, 0.03, inside));
     let alpha = smoothstep(-0.5, 0.5, inside / pixel()) * (1.0 - clear);
     // A box has rounded edges; other shapes are as thick as they are wide.
     let round = select(in.form.x, min(0.03, min(in.from_to.z, in.from_to.w)), in.form.y == 1.0);
@@ -99,8 +100,11 @@ fn bar(in: ShapeCorner) -> @location(0) vec4f {
     let wood = vec2f(dot(place, along), dot(place, vec2f(-along.y, along.x)));
     let rings = noise(vec2f(wood.x * 2.5, wood.y * 55.0 + 2.0 * noise(wood * vec2f(5.0, 9.0)))) * 0.65
         + noise(wood * vec2f(9.0, 190.0)) * 0.35;
-    let base = to_linear(in.colour) * mix(0.80, 1.12, rings);
-    return shown(lacquered(base, normal, vec3f(0.0, 0.0, 1.0), 0.55), alpha);
+    // A curtain hangs in folds.
+    let folds = 0.5 + 0.5 * sin(90.0 * place.x + 4.0 * noise(place * vec2f(3.0, 2.0)));
+    let stuff = select(mix(0.80, 1.12, rings), mix(0.62, 1.1, folds), in.form.z == 2.0);
+    let shine = select(0.55, 0.1, in.form.z == 2.0);
+    return shown(lacquered(to_linear(in.colour) * stuff, normal, vec3f(0.0, 0.0, 1.0), shine), alpha);
 }
 
 @fragment

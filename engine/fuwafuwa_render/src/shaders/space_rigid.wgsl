@@ -123,8 +123,12 @@ fn bar(in: RoundedCorner) -> @location(0) vec4f {
     let wave = 0.03 * noise3(wood * vec3f(4.0, 7.0, 7.0));
     let rings = noise(vec2f(wood.x * 2.5, 60.0 * (length(wood.yz + 0.03) + wave))) * 0.65
         + noise3(wood * vec3f(9.0, 150.0, 150.0)) * 0.35;
-    let base = to_linear(in.colour.rgb) * mix(0.82, 1.12, rings);
-    let lit = lacquered(base, normal, towards_eye(in.at), 0.35);
+    // A curtain hangs in folds.
+    let across = in.own.x + in.own.z;
+    let folds = 0.5 + 0.5 * sin(60.0 * across + 4.0 * noise(vec2f(3.0 * across, 2.0 * in.own.y)));
+    let stuff = select(mix(0.82, 1.12, rings), mix(0.62, 1.1, folds), in.number > 0.5);
+    let base = to_linear(in.colour.rgb) * stuff;
+    let lit = lacquered(base, normal, towards_eye(in.at), select(0.35, 0.1, in.number > 0.5));
     return shown(under_hands(in_light(lit, in.at, normal), in.at, normal), 1.0);
 }
 

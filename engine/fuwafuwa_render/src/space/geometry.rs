@@ -8,7 +8,7 @@ use super::skin::Skin;
 use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
 use crate::palette::Palette;
-use crate::rigid::{MAX_WALLS, is_glass};
+use crate::rigid::{MAX_WALLS, is_curtain, is_glass};
 use fuwafuwa::inspect::{hands, obstacles};
 use fuwafuwa::{Dim3, ElementId, MotionType, Shape, SoftBody, VoxelGrid, World};
 use glam::{Mat3, Vec3};
@@ -61,7 +61,13 @@ impl Geometry {
         let palette = frame.palette;
         let colours = frame.colours();
         let bars = obstacles(world).filter(|bar| !is_glass(*bar));
-        let bars = bars.filter_map(|bar| RoundedInstance::of(bar.shape(), palette.bar, 0.0));
+        let bars = bars.filter_map(|bar| {
+            let (colour, stuff) = match is_curtain(world, bar) {
+                true => (palette.curtain, 1.0),
+                false => (palette.bar, 0.0),
+            };
+            RoundedInstance::of(bar.shape(), colour, stuff)
+        });
         self.bars = append(&mut self.rounded, bars);
         self.hands = append(&mut self.rounded, balls(world, palette));
         let props = frame.props.iter();

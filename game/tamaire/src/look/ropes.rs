@@ -1,8 +1,9 @@
 //! Ropes, springs and pins between bodies.
 
 use super::DrawOptions;
-use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2};
-use fuwafuwa::{Dim, DimVector, JointKind, World};
+use egui::{Color32, Painter, Pos2, Shape, Stroke};
+use fuwafuwa::inspect::obstacles;
+use fuwafuwa::{Dim, DimVector, JointKind, Layers, World};
 
 /// Colours of the rim and of the inside of a rope.
 const ROPE: [Color32; 2] = [
@@ -31,7 +32,14 @@ pub(super) fn draw<D: Dim>(painter: &Painter, world: &World<D>, look: &DrawOptio
             JointKind::Rope { length } => {
                 // A parabola with this sag is about as long as the rope.
                 let slack = (length * length - distance * distance).max(0.0);
-                hanging(ends, scale * (0.375 * slack).sqrt())
+                let points = hanging(anchors, (0.375 * slack).sqrt());
+                let points = points.enumerate().map(|(step, at)| {
+                    // A taut rope passes through obstacles, and its ends may lie in them.
+                    let hangs = slack > 0.0 && (1..SEGMENTS).contains(&step);
+                    let at = if hangs { above(world, at) } else { at };
+                    look.view.to_screen(at.to_vec3())
+                });
+                points.collect()
             }
             JointKind::Spring { .. } => zigzag(ends, 2.0 * width),
             _ => {
@@ -47,13 +55,21 @@ pub(super) fn draw<D: Dim>(painter: &Painter, world: &World<D>, look: &DrawOptio
     }
 }
 
-/// Returns a parabola between two points whose middle hangs down by `sag` [points].
-fn hanging([from, to]: [Pos2; 2], sag: f32) -> Vec<Pos2> {
-    let place = |step: usize| {
+/// Returns points of a parabola between two positions whose middle hangs down by `sag` [m].
+fn hanging<V: DimVector>([from, to]: [V; 2], sag: f32) -> impl Iterator<Item = V> {
+    (0..=SEGMENTS).map(move |step| {
         let share = step as f32 / SEGMENTS as f32;
-        from.lerp(to, share) + Vec2::Y * (4.0 * sag * share * (1.0 - share))
-    };
-    (0..=SEGMENTS).map(place).collect()
+        from + (to - from) * share - V::Y * (4.0 * sag * share * (1.0 - share))
+    })
+}
+
+/// Returns the position, or the nearest one outside of the obstacles: a slack rope lies on the floor.
+fn above<D: Dim>(world: &World<D>, at: D::Vector) -> D::Vector {
+    let solid = obstacles(world).filter(|body| body.layers().meet(Layers::default()));
+    solid.fold(at, |at, body| {
+        let (distance, normal) = body.shape().distance(at);
+        at - normal * distance.min(0.0)
+    })
 }
 
 /// Returns a zigzag line between two points that deviates by `width` to both sides [points].

@@ -86,7 +86,9 @@ mod tests {
         // Once, if the player goes on.
         let mut guide = Guide::new(&played).unwrap();
         let mut goes_on = played;
-        (0..5).for_each(|_| goes_on.step(InputFrame::towards(from + Vec3::splat(0.2))));
+        for _ in 0..5 {
+            goes_on.step(InputFrame::towards(from + Vec3::splat(0.2)));
+        }
         let shown = std::iter::repeat_with(|| guide.step(&goes_on));
         let shown = shown.take_while(|stays| *stays).count();
         assert!(shown.abs_diff(once) <= 2, "{shown}");
