@@ -9,7 +9,7 @@ use guide::Guide;
 use reel::Reel;
 use std::sync::Arc;
 use tamaire_play::playground::{Change, ChangeError};
-use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError, Rewind};
+use tamaire_play::{AnyRound, InputFrame, Level, Playback, Replay, ReplayError, Rewind, Way};
 
 /// Round that advances in real time, played by people or replayed.
 pub struct Session {
@@ -52,6 +52,11 @@ impl Session {
     /// [`ReplayError`] if the recorded level is invalid or was changed.
     pub fn of_replay(replay: Arc<Replay>) -> Result<Self, ReplayError> {
         Ok(Self::of(Player::Replay(Reel::new(Playback::new(replay)?))))
+    }
+
+    /// Creates a session that shows a way to win a level.
+    pub fn of_way(level: Arc<Level>, way: &Way) -> Self {
+        Self::of(Player::Replay(Reel::new(Playback::of_way(level, way))))
     }
 
     fn of(player: Player) -> Self {

@@ -4,7 +4,7 @@ use crate::level::{LevelError, has_line, stem};
 use crate::playground::{MOST_AT_ONCE, MOST_CHANGES, TimedChange};
 use crate::round::{MAX_TICKS, start_targets};
 use crate::rules::is_zero;
-use crate::{AnyRound, InputFrame, Level, Outcome, Round};
+use crate::{AnyRound, InputFrame, Level, Outcome, Round, Way};
 use fuwafuwa::{DEFAULT_TICK, Dim};
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{BodyText, shortened};
@@ -327,6 +327,8 @@ pub struct Playback {
     tick: usize,
     /// Number of recorded ticks before the first input that moves a hand.
     idle_ticks: usize,
+    /// Whether the playback shows a way, which has no recorded hashes and ends with the win.
+    is_way: bool,
 }
 
 impl Playback {
@@ -341,7 +343,24 @@ impl Playback {
             replay,
             round,
             tick: 0,
+            is_way: false,
         })
+    }
+
+    /// Starts the playback of a way to win a level.
+    pub fn of_way(level: Arc<Level>, way: &Way) -> Self {
+        let round = AnyRound::new(level);
+        let replay = Replay {
+            frames: way.frames().iter().map(InputFrame::row).collect(),
+            ..round.replay()
+        };
+        Self {
+            idle_ticks: replay.idle_ticks(),
+            replay: Arc::new(replay),
+            round,
+            tick: 0,
+            is_way: true,
+        }
     }
 
     /// Returns a new playback of the same replay, at its start.
@@ -351,6 +370,7 @@ impl Playback {
             round: AnyRound::new(self.round.level().clone()),
             tick: 0,
             idle_ticks: self.idle_ticks,
+            is_way: self.is_way,
         }
     }
 
@@ -369,9 +389,10 @@ impl Playback {
         self.replay.ticks()
     }
 
-    /// Returns whether all recorded ticks were played.
+    /// Returns whether all recorded ticks were played, or whether a way has won.
     pub fn is_over(&self) -> bool {
-        self.tick >= self.replay.ticks()
+        let has_won = self.is_way && self.round.progress().outcome.is_some();
+        has_won || self.tick >= self.replay.ticks()
     }
 
     /// Returns whether the next tick is the first one that moves a hand, which starts the clock.
@@ -390,7 +411,7 @@ impl Playback {
         }
         self.round.step(self.replay.frame(self.tick));
         self.tick += 1;
-        if was_over {
+        if was_over || self.is_way {
             return Ok(());
         }
         if self.tick.is_multiple_of(60) || self.is_over() {

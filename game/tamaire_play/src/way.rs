@@ -60,13 +60,17 @@ impl Way {
         ends[0].max(ends[1])
     }
 
+    /// Returns the input of the way and of the time after it, in which the bodies come to rest.
+    pub fn frames(&self) -> Vec<InputFrame> {
+        let ticks = ((self.seconds() + AFTER) / DEFAULT_TICK) as u64;
+        (0..ticks).map(|tick| self.frame(tick)).collect()
+    }
+
     /// Plays the way in a round from its start. Returns the outcome if it wins within 8 s after the end of the way.
     /// With `shake`, a seed, all targets tremble by up to 3 mm.
     pub fn play(&self, round: &mut AnyRound, shake: Option<u64>) -> Option<Outcome> {
         let mut shake = shake.map(Shake::new);
-        let ticks = ((self.seconds() + AFTER) / DEFAULT_TICK) as u64;
-        for tick in 0..ticks {
-            let frame = self.frame(tick);
+        for frame in self.frames() {
             round.step(match &mut shake {
                 Some(shake) => shake.of(frame),
                 None => frame,

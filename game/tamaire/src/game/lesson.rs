@@ -16,6 +16,8 @@ const PATIENCE: f32 = 20.0;
 const PROGRESS: f32 = 0.02;
 /// Number of rounds of the same level given up one after the other, from which on a player counts as stuck.
 const FAILURES: usize = 2;
+/// Number of rounds of the same level given up one after the other, from which on a way to win may be shown.
+const TRIES: usize = 4;
 /// Playing time after which a ghost shows the first move, and again each time [s].
 const UNTIL_FIRST_MOVE: f32 = 60.0;
 
@@ -76,6 +78,11 @@ impl Tutorial {
             self.unshown = 0.0;
         }
         wants
+    }
+
+    /// Returns whether the player has given the same level up so often that a way to win may be shown.
+    pub(super) fn has_tried(&self) -> bool {
+        self.failures >= TRIES
     }
 
     /// Returns whether to show each of the three hints: move the hand, raise the hand, turn the camera.

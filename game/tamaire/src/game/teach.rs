@@ -3,8 +3,11 @@
 use super::lesson::Seen;
 use super::{Game, Screen};
 use crate::input::{Action, InputMethod};
-use crate::records::Record;
+use crate::records::{Record, WishName};
+use crate::session::Session;
 use fuwafuwa::Vec3;
+use tamaire_play::Way;
+use tamaire_play::level::PATH;
 
 impl Game {
     /// Returns the hints about moving the hand, raising it and turning the camera, each with whether to show
@@ -68,6 +71,39 @@ impl Game {
         }
     }
 
+    /// Returns the way to win the level of the round that may be shown: one that reaches a goal that the player has not
+    /// reached, if there is one. `None` in a level that is not on the path, and before the player has won it or has given
+    /// it up four times.
+    pub fn way_to_show(&self) -> Option<Way> {
+        let level = self.bout.round().level();
+        let known = PATH.iter().find(|known| known.id == level.id)?;
+        let record = self.records.of(&level.id).filter(|record| record.is_won());
+        if record.is_none() && !self.bout.lesson.has_tried() {
+            return None;
+        }
+        let wishes = &level.game().wish;
+        let is_open = |number: &usize| {
+            let wish = number.checked_sub(1).and_then(|index| wishes.get(index));
+            wish.is_some_and(|wish| {
+                record.is_none_or(|record| !record.wishes.contains(&WishName::of(wish)))
+            })
+        };
+        let ways = known.ways().way;
+        let other = ways.iter().find(|way| way.wishes.iter().any(is_open));
+        other.or(ways.first()).cloned()
+    }
+
+    /// Shows a way to win the level of the round; see [`Self::way_to_show`].
+    pub fn show_way(&mut self) {
+        if let Some(way) = self.way_to_show() {
+            let level = self.bout.round().level();
+            // The way is made for the level without assists.
+            let plain = self.listed(level).map(|index| self.levels[index].clone());
+            let level = plain.unwrap_or_else(|| level.clone());
+            self.begin(Session::of_way(level, &way));
+        }
+    }
+
     fn is_played_in_space(&self) -> bool {
         self.screen() == Screen::Play && self.bout.is_played_in_space()
     }
@@ -79,6 +115,7 @@ mod tests {
     use crate::journey::Lock;
     use crate::platform::{Files, Sound};
     use app_shell::Pads;
+    use fuwafuwa::DEFAULT_TICK;
     use tamaire_play::{AnyRound, InputFrame};
 
     fn game() -> Game {
@@ -120,6 +157,48 @@ mod tests {
         give_up(&mut game);
         give_up(&mut game);
         assert!(!is_shown(&mut game));
+    }
+
+    #[test]
+    fn a_way_is_shown_after_four_failures_or_a_win_and_prefers_a_missing_goal() {
+        let mut game = game();
+        let hop = place(&game, "hop");
+        game.start(hop);
+        for _ in 0..4 {
+            assert!(game.way_to_show().is_none());
+            give_up(&mut game);
+        }
+        let ways = PATH
+            .iter()
+            .find(|level| level.id == "hop")
+            .unwrap()
+            .ways()
+            .way;
+        assert_eq!(game.way_to_show().as_ref(), Some(&ways[0]));
+        game.show_way();
+        assert!(!game.bout.session.is_played());
+        // A way counts for nothing. It ends with its win.
+        for _ in 0..60 * 40 {
+            game.update(DEFAULT_TICK);
+        }
+        assert!(game.records.of("hop").is_none());
+        assert_ne!(game.screen(), Screen::Play);
+
+        let level = game.levels[hop].clone();
+        let mut round = AnyRound::new(level.clone());
+        let outcome = ways[0].play(&mut round, None).unwrap();
+        game.records.note(&level, &outcome, 0);
+        game.start(hop);
+        let shown = game.way_to_show().unwrap();
+        assert!(
+            shown
+                .wishes
+                .iter()
+                .any(|wish| !ways[0].wishes.contains(wish))
+        );
+        let classic = place(&game, "classic");
+        game.start(classic);
+        assert!(game.way_to_show().is_none(), "not on the path");
     }
 
     #[test]

@@ -56,7 +56,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             }
             let wishes = &level.game().wish;
             let is_reached = wishes.iter().all(|wish| outcome.fulfils(wish));
-            buttons(ui, &theme, said, is_reached)
+            buttons(ui, &theme, said, is_reached, game.way_to_show().is_some())
         })
     });
     perform(game, ui, wanted, to_levels);
@@ -166,7 +166,13 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
 
 /// Shows the buttons of the result and returns the chosen action. The main button leads to the next level if
 /// all goals of the current level are reached; otherwise it restarts the level.
-fn buttons(ui: &mut Ui, theme: &Theme, said: &Words, is_reached: bool) -> Option<Act> {
+fn buttons(
+    ui: &mut Ui,
+    theme: &Theme,
+    said: &Words,
+    is_reached: bool,
+    can_show: bool,
+) -> Option<Act> {
     let mut wanted: Option<Act> = None;
     let width = (2.0 * 200.0 + GAP).min(ui.available_width());
     let again: (&str, Act) = (said.play_again, Game::retry);
@@ -181,8 +187,12 @@ fn buttons(ui: &mut Ui, theme: &Theme, said: &Words, is_reached: bool) -> Option
     if response.clicked() {
         wanted = Some(main.1);
     }
+    let mut first = vec![other, (said.race, race)];
+    if can_show {
+        first.push((said.show_way, Game::show_way));
+    }
     let rows: [&[(&str, Act)]; 3] = [
-        &[other, (said.race, race)],
+        &first,
         &[(said.save, Game::keep_replay), (said.link, Game::copy_link)],
         &[
             (said.photo, Game::keep_photo),

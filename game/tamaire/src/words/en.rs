@@ -105,6 +105,7 @@ pub(super) const WORDS: Words = Words {
     hold_to_rewind: |key| format!("Hold {key} to turn back time."),
     watch: "Watch",
     race: "Race it",
+    show_way: "Show a way",
     save: "Save replay",
     delete: "Delete",
     confirm: "Really?",

@@ -104,6 +104,7 @@ pub(super) const WORDS: Words = Words {
     hopeless: "のこりが たりなくて、もうクリアできないよ。",
     watch: "見る",
     race: "きょうそう",
+    show_way: "やりかたを見る",
     save: "リプレイを保存",
     delete: "けす",
     confirm: "けしていい？",

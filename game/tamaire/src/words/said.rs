@@ -55,6 +55,8 @@ pub struct Words {
     pub fill_basket: &'static str,
     pub watch: &'static str,
     pub race: &'static str,
+    /// Button that shows a way to win the level.
+    pub show_way: &'static str,
     pub save: &'static str,
     pub delete: &'static str,
     pub confirm: &'static str,
