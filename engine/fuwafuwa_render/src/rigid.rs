@@ -73,12 +73,12 @@ impl RigidShapes {
             if let Shape::HalfSpace { normal, offset } = shape {
                 self.walls.push([normal.x, normal.y, offset, 0.0]);
             }
-            let (colour, stuff) = match obstacle {
+            let (colour, fabric) = match obstacle {
                 _ if is_glass(obstacle) => (palette.glass, 1.0),
                 _ if is_curtain(world, obstacle) => (palette.curtain, 2.0),
                 _ => (palette.bar, 0.0),
             };
-            self.shapes.extend(instance(shape, colour, stuff));
+            self.shapes.extend(instance(shape, colour, fabric));
         }
         self.walls.truncate(MAX_WALLS);
         self.bar_count = self.shapes.len() as u32;
@@ -191,8 +191,8 @@ mod tests {
             (rigid.bar_count, rigid.hand_count, rigid.shapes.len()),
             (4, 2, 7)
         );
-        let stuff: Vec<f32> = rigid.shapes[..4].iter().map(|bar| bar.number).collect();
-        assert_eq!(stuff, [0.0, 1.0, 2.0, 0.0]);
+        let fabrics: Vec<f32> = rigid.shapes[..4].iter().map(|bar| bar.number).collect();
+        assert_eq!(fabrics, [0.0, 1.0, 2.0, 0.0]);
         assert!((rigid.shapes[3].radius - 0.5).abs() < 1e-5);
         assert_ne!(rigid.shapes[4].colour, rigid.shapes[5].colour);
         assert_eq!((rigid.shapes[6].number, rigid.dots.len()), (0.5, 1));

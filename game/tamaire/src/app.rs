@@ -441,7 +441,11 @@ impl eframe::App for App {
         // order of the widgets.
         let is_list = matches!(
             self.game.screen(),
-            Screen::Settings | Screen::Forces | Screen::Licences | Screen::Replays
+            Screen::Settings
+                | Screen::Forces
+                | Screen::Licences
+                | Screen::Replays
+                | Screen::Toolbox
         );
         self.presses.waiting().in_order = is_list && self.game.controls.rebinding.is_none();
         ctx.request_repaint();

@@ -229,6 +229,11 @@ impl Game {
 
     /// Leaves the round and returns to the screen from which it was started.
     pub fn leave_round(&mut self) {
+        // After a way was shown, it is the player's turn.
+        if self.bout.session.shows_way() && self.bout.session.is_over() {
+            let level = self.bout.round().level().clone();
+            return self.play(&level);
+        }
         self.screens.close(Screen::Play);
         self.arrive();
     }

@@ -128,6 +128,11 @@ impl Session {
         false
     }
 
+    /// Whether a way to win the level is shown.
+    pub fn shows_way(&self) -> bool {
+        matches!(&self.player, Player::Replay(reel) if reel.playback().is_way())
+    }
+
     /// Whether people play the round.
     pub fn is_played(&self) -> bool {
         matches!(self.player, Player::People(_))
@@ -277,7 +282,7 @@ impl Session {
     /// frame when there is no `time` left.
     fn guide(&mut self, ticks: usize, time: impl Fn() -> bool) {
         for tick in 0..ticks {
-            if tick > 0 && !time() {
+            if self.guide.is_none() || tick > 0 && !time() {
                 return;
             }
             let guide = self.guide.take();

@@ -7,7 +7,7 @@
 //! - for each straight bot of `--bots` at each of `--speeds`, the number of rounds of a minute that it wins, out of
 //!   `--starts`.
 //!
-//! `--stretch` and `--shift` try ways that are slower or beside the written ones, as those of a person are.
+//! `--stretch` slows the ways down and `--shift` moves them, as a person would vary them.
 //! `--save FOLDER` writes a replay of each way and of the first round of each straight bot.
 
 use clap::Parser;

@@ -186,8 +186,9 @@ impl<D: Dim> Round<D> {
         if self.waiting().len() >= MOST_AT_ONCE || self.changes().len() >= MOST_CHANGES {
             return Err(ChangeError::TooMany);
         }
-        let pins = change == Change::Press(true) && self.tool().0 != Tool::Push;
-        if pins && self.world().joints().count() >= MOST_JOINTS {
+        let adds_joint = matches!(self.tool().0, Tool::Grab | Tool::Pin);
+        let adds_joint = adds_joint && change == Change::Press(true);
+        if adds_joint && self.world().joints().count() >= MOST_JOINTS {
             return Err(ChangeError::TooManyPins);
         }
         if let Change::Add { form, stuff, at } = change {

@@ -379,6 +379,11 @@ impl Playback {
         &self.round
     }
 
+    /// Returns whether this shows a way; see [`Self::of_way`].
+    pub fn is_way(&self) -> bool {
+        self.is_way
+    }
+
     /// Number of ticks that were played.
     pub fn tick(&self) -> usize {
         self.tick

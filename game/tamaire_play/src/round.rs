@@ -10,6 +10,7 @@ use fuwafuwa::{
 };
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::Machinery;
+use std::mem::discriminant;
 use std::sync::Arc;
 
 /// Maximum speed of a hand's target [m/s]. A hand much faster than a wave in the body would throw the body
@@ -273,8 +274,18 @@ impl<D: Dim> Round<D> {
 
     /// Notes a change of a playground, to be made at the beginning of the next tick, and records it.
     pub(crate) fn note_change(&mut self, change: Change) {
-        self.waiting.push(change);
         let tick = self.world.ticks();
+        // While a slider is dragged in a pause, only its last value counts.
+        let is_setting = matches!(
+            change,
+            Change::Gravity(_) | Change::Air(_) | Change::HandSize(_)
+        );
+        let is_alike = |last: &Change| discriminant(last) == discriminant(&change);
+        if is_setting && self.waiting.last().is_some_and(is_alike) {
+            self.waiting.pop();
+            self.changes.pop_if(|last| u64::from(last.tick) == tick);
+        }
+        self.waiting.push(change);
         if tick == self.frames.len() as u64 && self.changes.len() < MOST_CHANGES {
             let tick = tick as u32;
             self.changes.push(TimedChange { tick, change });

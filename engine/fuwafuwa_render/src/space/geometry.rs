@@ -62,11 +62,11 @@ impl Geometry {
         let colours = frame.colours();
         let bars = obstacles(world).filter(|bar| !is_glass(*bar));
         let bars = bars.filter_map(|bar| {
-            let (colour, stuff) = match is_curtain(world, bar) {
+            let (colour, fabric) = match is_curtain(world, bar) {
                 true => (palette.curtain, 1.0),
                 false => (palette.bar, 0.0),
             };
-            RoundedInstance::of(bar.shape(), colour, stuff)
+            RoundedInstance::of(bar.shape(), colour, fabric)
         });
         self.bars = append(&mut self.rounded, bars);
         self.hands = append(&mut self.rounded, balls(world, palette));

@@ -37,7 +37,7 @@ pub struct RoundedInstance {
     pub half: Vec3,
     /// Red, green, blue, opacity.
     pub colour: [f32; 4],
-    /// Player number of a hand, fill level of a basket, or variation seed of a crumb.
+    /// Player number of a hand, fill level of a basket, variation seed of a crumb, or 1 for a bar that is a curtain.
     pub number: f32,
 }
 

@@ -169,7 +169,7 @@ impl FieldError {
 /// Returns the reason why a number of an entry in a list of `count` entries is wrong.
 pub(super) fn expected_number(count: usize, found: impl std::fmt::Display) -> String {
     match count {
-        0 => format!("expected nothing, because the list is empty, found {found}"),
+        0 => format!("expected no number, because the scene has none of these, found {found}"),
         1 => format!("expected 1, found {found}"),
         _ => format!("expected 1 to {count}, found {found}"),
     }

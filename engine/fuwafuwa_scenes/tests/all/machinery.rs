@@ -176,7 +176,7 @@ fn mistakes_name_line_and_field() {
         ),
         (
             "[[switch]]\nball = { centre = [0.0, 0.0, 0.0], radius = 0.3 }\nbodies = [3]\n".into(),
-            "expected nothing, because the list is empty, found 3",
+            "expected no number, because the scene has none of these, found 3",
         ),
         (
             "[[switch]]\nball = { centre = [0.0, 0.0, 0.0], radius = 0.3 }\nby = \"hand\"\nbodies = [1]\n"

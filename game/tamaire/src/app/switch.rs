@@ -50,7 +50,10 @@ impl Switch {
         match controls.scan.just_taken(&others) {
             _ if !is_played && taken.is_some() => game.act(Action::Pause, InputSource::Keys),
             Some(ScanAction::Pause) => game.act(Action::Pause, InputSource::Keys),
-            Some(ScanAction::Tool) => game.bout.toys.is_latched ^= true,
+            Some(ScanAction::Tool) => {
+                controls.scan.end();
+                game.bout.toys.is_latched ^= true;
+            }
             _ => controls.devices.taken = taken,
         }
     }

@@ -81,13 +81,16 @@ impl CurrentRound {
     /// Replaces the round and keeps the camera. `time` is the time since the start of the game [s].
     pub(crate) fn begin(&mut self, session: Session, time: f64) {
         let has_failed = self.is_given_up_for(&session);
+        let is_after_way = self.session.shows_way() || session.shows_way();
         self.toys = Toys::of(session.round());
         self.session = session;
         self.is_ghost_chosen = false;
         self.watch_speed = 1.0;
         self.opening = Cutaway::begin(time);
         self.effects = Effects::default();
-        if self.lesson.begin(has_failed) {
+        if is_after_way {
+            self.lesson.begin_after_way();
+        } else if self.lesson.begin(has_failed) {
             self.effects.remind();
         }
         self.switches.clear();

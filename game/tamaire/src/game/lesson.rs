@@ -16,7 +16,7 @@ const PATIENCE: f32 = 20.0;
 const PROGRESS: f32 = 0.02;
 /// Number of rounds of the same level given up one after the other, from which on a player counts as stuck.
 const FAILURES: usize = 2;
-/// Number of rounds of the same level given up one after the other, from which on a way to win may be shown.
+/// Consecutive failures in a level after which a way to win may be shown.
 const TRIES: usize = 4;
 /// Playing time after which a ghost shows the first move, and again each time [s].
 const UNTIL_FIRST_MOVE: f32 = 60.0;
@@ -57,6 +57,13 @@ pub(super) struct Seen {
 }
 
 impl Tutorial {
+    /// Goes on in the same level after a way to win was shown: the failures count on.
+    pub(super) fn begin_after_way(&mut self) {
+        let failures = self.failures;
+        self.begin(false);
+        self.failures = failures;
+    }
+
     /// Prepares for a new round. `has_failed` tells whether the player has given the same level up. Returns
     /// whether the player counts as stuck.
     pub(super) fn begin(&mut self, has_failed: bool) -> bool {
@@ -81,7 +88,7 @@ impl Tutorial {
     }
 
     /// Returns whether the player has given the same level up so often that a way to win may be shown.
-    pub(super) fn has_tried(&self) -> bool {
+    pub(super) fn may_see_way(&self) -> bool {
         self.failures >= TRIES
     }
 

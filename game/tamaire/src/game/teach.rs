@@ -71,16 +71,22 @@ impl Game {
         }
     }
 
-    /// Returns the way to win the level of the round that may be shown: one that reaches a goal that the player has not
-    /// reached, if there is one. `None` in a level that is not on the path, and before the player has won it or has given
-    /// it up four times.
-    pub fn way_to_show(&self) -> Option<Way> {
+    /// Returns whether a way to win the level of the round may be shown: the level is on the path, and the player has
+    /// won it or has given it up four times. Not in calm mode, because things may tear.
+    pub fn may_show_way(&self) -> bool {
+        let level = self.bout.round().level();
+        let is_on_path = PATH.iter().any(|known| known.id == level.id);
+        let is_built_in = is_on_path && self.listed(level).is_some();
+        let record = self.records.of(&level.id);
+        let is_due = record.is_some_and(Record::is_won) || self.bout.lesson.may_see_way();
+        is_built_in && is_due && !self.settings.calm
+    }
+
+    /// Returns the way to show: one that reaches a goal that the player has not reached, if there is one.
+    fn way_to_show(&self) -> Option<Way> {
         let level = self.bout.round().level();
         let known = PATH.iter().find(|known| known.id == level.id)?;
-        let record = self.records.of(&level.id).filter(|record| record.is_won());
-        if record.is_none() && !self.bout.lesson.has_tried() {
-            return None;
-        }
+        let record = self.records.of(&level.id);
         let wishes = &level.game().wish;
         let is_open = |number: &usize| {
             let wish = number.checked_sub(1).and_then(|index| wishes.get(index));
@@ -93,14 +99,14 @@ impl Game {
         other.or(ways.first()).cloned()
     }
 
-    /// Shows a way to win the level of the round; see [`Self::way_to_show`].
+    /// Shows a way to win the level of the round; see [`Self::may_show_way`].
     pub fn show_way(&mut self) {
-        if let Some(way) = self.way_to_show() {
-            let level = self.bout.round().level();
-            // The way is made for the level without assists.
-            let plain = self.listed(level).map(|index| self.levels[index].clone());
-            let level = plain.unwrap_or_else(|| level.clone());
-            self.begin(Session::of_way(level, &way));
+        let Some(way) = self.way_to_show().filter(|_| self.may_show_way()) else {
+            return;
+        };
+        // The way is made for the level without assists, which is the one in the list.
+        if let Some(index) = self.listed(self.bout.round().level()) {
+            self.begin(Session::of_way(self.levels[index].clone(), &way));
         }
     }
 
@@ -165,7 +171,7 @@ mod tests {
         let hop = place(&game, "hop");
         game.start(hop);
         for _ in 0..4 {
-            assert!(game.way_to_show().is_none());
+            assert!(!game.may_show_way());
             give_up(&mut game);
         }
         let ways = PATH
@@ -174,15 +180,23 @@ mod tests {
             .unwrap()
             .ways()
             .way;
+        assert!(game.may_show_way());
         assert_eq!(game.way_to_show().as_ref(), Some(&ways[0]));
         game.show_way();
-        assert!(!game.bout.session.is_played());
-        // A way counts for nothing. It ends with its win.
+        assert!(game.bout.session.shows_way());
+        // A way ends with its win, which counts for nothing.
         for _ in 0..60 * 40 {
             game.update(DEFAULT_TICK);
         }
+        assert!(game.bout.session.is_over());
         assert!(game.records.of("hop").is_none());
-        assert_ne!(game.screen(), Screen::Play);
+        // Then it is the player's turn, who may see it again.
+        game.leave_round();
+        assert!(game.bout.session.is_played() && game.screen() == Screen::Play);
+        assert!(game.may_show_way());
+        game.settings.calm = true;
+        assert!(!game.may_show_way());
+        game.settings.calm = false;
 
         let level = game.levels[hop].clone();
         let mut round = AnyRound::new(level.clone());
@@ -198,7 +212,7 @@ mod tests {
         );
         let classic = place(&game, "classic");
         game.start(classic);
-        assert!(game.way_to_show().is_none(), "not on the path");
+        assert!(!game.may_show_way(), "not on the path");
     }
 
     #[test]

@@ -29,6 +29,8 @@ pub struct Toys {
     pub is_latched: bool,
     /// Whether the mouse or a finger presses the tool.
     pub is_pointer_down: bool,
+    /// Whether the key or button of the tool was up since the round is shown.
+    is_armed: bool,
     /// Whether the tool was pressed in the last frame.
     is_pressed: bool,
 }
@@ -45,6 +47,7 @@ impl Toys {
             has_sliders: false,
             is_latched: false,
             is_pointer_down: false,
+            is_armed: false,
             is_pressed: false,
         };
         toys.follow(round);
@@ -66,8 +69,8 @@ impl Game {
         self.bout.session.is_played() && !self.bout.round().has_basket()
     }
 
-    /// Makes a change of the playground, and tells the player if it is refused.
-    pub fn change_playground(&mut self, change: Change) {
+    /// Makes a change of the playground, and tells the player if it is refused. Returns whether it is made.
+    pub fn change_playground(&mut self, change: Change) -> bool {
         if matches!(
             change,
             Change::Tool(_) | Change::HandSize(_) | Change::Clear
@@ -76,13 +79,16 @@ impl Game {
             self.bout.toys.is_pressed = false;
         }
         let said = self.words();
-        match self.bout.session.change(change) {
-            Ok(()) | Err(ChangeError::NoPlayground) => {}
-            Err(ChangeError::Full) => self.notify(said.room_is_full.to_string()),
-            Err(ChangeError::TooManyPins) => self.notify(said.too_many_pins.to_string()),
-            Err(ChangeError::TooMany) => self.notify(said.too_many_changes.to_string()),
-            Err(ChangeError::Invalid(reason)) => self.notify(reason),
-        }
+        let refused = match self.bout.session.change(change) {
+            Ok(()) => return true,
+            Err(ChangeError::NoPlayground) => return false,
+            Err(ChangeError::Full) => said.room_is_full.to_string(),
+            Err(ChangeError::TooManyPins) => said.too_many_pins.to_string(),
+            Err(ChangeError::TooMany) => said.too_many_changes.to_string(),
+            Err(ChangeError::Invalid(reason)) => reason,
+        };
+        self.notify(refused);
+        false
     }
 
     /// Chooses a tool of the hand.
@@ -92,20 +98,21 @@ impl Game {
         self.change_playground(Change::Tool(tool));
     }
 
-    /// Chooses gravity, air and the size of the hand.
-    pub fn choose_air(&mut self, chosen: Toys) {
-        let toys = &mut self.bout.toys;
-        let before = *toys;
-        (toys.gravity, toys.air, toys.hand) = (chosen.gravity, chosen.air, chosen.hand);
+    /// Sets gravity, air and the size of the hand as in `chosen`.
+    pub fn set_room(&mut self, chosen: Toys) {
+        let before = self.bout.toys;
         let unit = |value: f32, step: f32| (value / step).round() as u8;
-        if before.gravity != chosen.gravity {
-            self.change_playground(Change::Gravity(unit(chosen.gravity, 0.5)));
+        let gravity = Change::Gravity(unit(chosen.gravity, 0.5));
+        if before.gravity != chosen.gravity && self.change_playground(gravity) {
+            self.bout.toys.gravity = chosen.gravity;
         }
-        if before.air != chosen.air {
-            self.change_playground(Change::Air(unit(chosen.air, 0.1)));
+        let air = Change::Air(unit(chosen.air, 0.1));
+        if before.air != chosen.air && self.change_playground(air) {
+            self.bout.toys.air = chosen.air;
         }
-        if before.hand != chosen.hand {
-            self.change_playground(Change::HandSize(unit(chosen.hand, 1.0)));
+        let hand = Change::HandSize(unit(chosen.hand, 1.0));
+        if before.hand != chosen.hand && self.change_playground(hand) {
+            self.bout.toys.hand = chosen.hand;
         }
     }
 
@@ -133,8 +140,8 @@ impl Game {
         } else {
             -0.25
         };
-        // Neighbours lie a little apart, so that towers do not stand still.
-        let apart = 0.03 * (round.ticks() % 7) as f32;
+        // Bodies that are added one after the other lie a little apart.
+        let apart = 0.03 * (round.changes().len() % 7) as f32;
         let x = middle.x + side * (high.x - low.x) + apart;
         Vec3::new(x, high.y - BELOW_TOP, middle.z)
     }
@@ -154,10 +161,19 @@ impl Game {
     pub(super) fn press_tool(&mut self) {
         let devices = &self.controls.devices;
         let is_held = devices.is_held(&self.settings.bindings, Action::Tool);
+        let (is_on, scans) = (
+            self.screen() == Screen::Play && self.is_in_playground(),
+            self.settings.scanning.is_on(),
+        );
         let toys = &mut self.bout.toys;
-        let is_pressed = is_held || toys.is_pointer_down || toys.is_latched;
+        // A button that is still down from a menu, and the switch of a player with one switch, press no tool.
+        toys.is_armed = is_on && (toys.is_armed || !is_held);
+        toys.is_latched &= scans;
+        let is_pressed = is_held && toys.is_armed && !scans;
+        let is_pressed = is_pressed || toys.is_pointer_down || toys.is_latched;
         let is_pressed = is_pressed && toys.tool != Tool::Push;
-        let is_on = self.screen() == Screen::Play && self.is_in_playground();
+        // One press of a pin is one pin.
+        toys.is_latched &= toys.tool != Tool::Pin;
         if is_on && is_pressed != self.bout.toys.is_pressed {
             self.bout.toys.is_pressed = is_pressed;
             self.change_playground(Change::Press(is_pressed));

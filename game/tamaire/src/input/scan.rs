@@ -98,6 +98,11 @@ impl Scan {
         }
     }
 
+    /// Ends the selected action, so that scanning goes on.
+    pub fn end(&mut self) {
+        self.is_taken = false;
+    }
+
     /// Whether the player has ever selected an offer.
     pub fn is_known(&self) -> bool {
         self.is_known

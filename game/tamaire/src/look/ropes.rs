@@ -36,7 +36,11 @@ pub(super) fn draw<D: Dim>(painter: &Painter, world: &World<D>, look: &DrawOptio
                 let points = points.enumerate().map(|(step, at)| {
                     // A taut rope passes through obstacles, and its ends may lie in them.
                     let hangs = slack > 0.0 && (1..SEGMENTS).contains(&step);
-                    let at = if hangs { above(world, at) } else { at };
+                    let at = if hangs {
+                        outside_obstacles(world, at)
+                    } else {
+                        at
+                    };
                     look.view.to_screen(at.to_vec3())
                 });
                 points.collect()
@@ -64,7 +68,7 @@ fn hanging<V: DimVector>([from, to]: [V; 2], sag: f32) -> impl Iterator<Item = V
 }
 
 /// Returns the position, or the nearest one outside of the obstacles: a slack rope lies on the floor.
-fn above<D: Dim>(world: &World<D>, at: D::Vector) -> D::Vector {
+fn outside_obstacles<D: Dim>(world: &World<D>, at: D::Vector) -> D::Vector {
     let solid = obstacles(world).filter(|body| body.layers().meet(Layers::default()));
     solid.fold(at, |at, body| {
         let (distance, normal) = body.shape().distance(at);

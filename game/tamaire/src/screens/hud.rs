@@ -199,7 +199,8 @@ fn draw_name(ui: &Ui, free: Rect, scale: f32, game: &Game) -> f32 {
     let left = NAME.saturating_sub(round.ticks()) as f32;
     let session = &game.bout.session;
     let is_busy = session.is_rewinding() || session.is_winding() || game.bout.elements.is_some();
-    if left == 0.0 || is_busy {
+    // Notices lie at the same place.
+    if left == 0.0 || is_busy || game.notices.iter().next().is_some() {
         return free.top();
     }
     let strength = match game.settings.reduced_motion {
@@ -210,7 +211,8 @@ fn draw_name(ui: &Ui, free: Rect, scale: f32, game: &Game) -> f32 {
     let ink = game.theme().ink.gamma_multiply(strength);
     let width = free.width() - scale * 48.0;
     let galley = fitted(ui.painter(), name, 30.0 * scale, width, ink);
-    draw_label(ui, free, scale, galley, ink, strength, game)
+    let fill = pale(&game.theme()).gamma_multiply(strength);
+    draw_label(ui, free, scale, galley, fill)
 }
 
 /// Draws the explanation of the element view at the top of the `free` part of the screen.
@@ -223,27 +225,18 @@ fn draw_caption(ui: &Ui, free: Rect, scale: f32, game: &Game) {
     let width = (free.width() - scale * 48.0).min(scale * 620.0);
     let ink = game.theme().ink;
     let galley = ui.painter().layout(text, font, ink, width);
-    draw_label(ui, free, scale, galley, ink, 1.0, game);
+    draw_label(ui, free, scale, galley, pale(&game.theme()));
 }
 
-/// Draws a text on a pale background at the top of the `free` part of the screen. Returns the upper edge of what is then
+/// Draws a text on a background at the top of the `free` part of the screen. Returns the upper edge of what is then
 /// free.
-fn draw_label(
-    ui: &Ui,
-    free: Rect,
-    scale: f32,
-    galley: Arc<Galley>,
-    ink: Color32,
-    strength: f32,
-    game: &Game,
-) -> f32 {
+fn draw_label(ui: &Ui, free: Rect, scale: f32, galley: Arc<Galley>, fill: Color32) -> f32 {
     let size = galley.size() + scale * vec2(32.0, 16.0);
     let at = pos2(free.center().x - 0.5 * size.x, free.top());
     let rect = Rect::from_min_size(at, size);
-    let fill = pale(&game.theme()).gamma_multiply(strength);
     ui.painter().rect_filled(rect, scale * 16.0, fill);
     let at = rect.center() - 0.5 * galley.size();
-    ui.painter().galley(at, galley, ink);
+    ui.painter().galley(at, galley, Color32::BLACK);
     rect.bottom() + scale * GAP
 }
 

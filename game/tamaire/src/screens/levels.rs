@@ -8,7 +8,7 @@ use crate::game::Game;
 use crate::journey::{Journey, Lock, Section, Stars};
 use crate::look::{Maps, Stage};
 use crate::records::{Record, WishName};
-use crate::words::Language;
+use crate::words::{Language, Words};
 use app_shell::Theme;
 use app_shell::widgets::{ButtonStyle, button, fitted, focus_ring, highlight, is_on, plain_button};
 use egui::{
@@ -284,7 +284,7 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
         x += 32.0;
     }
     if let Some(record) = record {
-        draw_best_time(painter, &theme, map, record);
+        draw_best_time(painter, &theme, game.words(), map, record);
         let at = map.right_top() + vec2(-14.0, 14.0);
         let is_unaided = !record.best.is_empty() || !record.best_rewound.is_empty();
         let tone = if is_unaided { theme.good } else { theme.faint };
@@ -300,20 +300,20 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
 }
 
 /// Draws the shortest time of a record in the lower right corner of the thumbnail, in grey if only aided rounds were won.
-fn draw_best_time(painter: &Painter, theme: &Theme, map: Rect, record: &Record) {
+fn draw_best_time(painter: &Painter, theme: &Theme, said: &Words, map: Rect, record: &Record) {
     let shortest = |best: &BTreeMap<Route, u64>| best.values().min().copied();
     let unaided = shortest(&record.best).or_else(|| shortest(&record.best_rewound));
     let Some(ticks) = unaided.or_else(|| shortest(&record.best_assisted)) else {
         return;
     };
-    let seconds = ticks as f32 * fuwafuwa::DEFAULT_TICK;
+    let time = (said.seconds)(ticks as f32 * fuwafuwa::DEFAULT_TICK);
     let ink = if unaided.is_some() {
         theme.ink
     } else {
         theme.faint
     };
     let font = FontId::proportional(16.0);
-    let galley = painter.layout_no_wrap(format!("{seconds:.1} s"), font, ink);
+    let galley = painter.layout_no_wrap(time, font, ink);
     let size = galley.size() + vec2(16.0, 6.0);
     let place = Rect::from_min_size(map.right_bottom() - size - vec2(6.0, 6.0), size);
     painter.rect_filled(place, 0.5 * size.y, pale(theme));
@@ -337,14 +337,16 @@ fn star(is_earned: bool) -> &'static str {
 fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<&Record>) {
     let (theme, said) = (game.theme(), game.words());
     let wishes = level.game().wish.iter().map(|wish| (said.wish)(wish));
-    let names = std::iter::once(said.fill_basket.to_string()).chain(wishes);
+    let has_basket = !level.game().all_baskets().is_empty();
+    let won = has_basket.then(|| said.fill_basket.to_string());
+    let names = won.into_iter().chain(wishes);
     let stars = stars_of(level, record).into_iter().map(star);
     let wishes = stars
         .zip(names)
         .map(|(star, name)| format!("{star} {name}"));
     let time = |(&route, &ticks): (&Route, &u64)| {
-        let seconds = ticks as f32 * fuwafuwa::DEFAULT_TICK;
-        format!("{} {seconds:.1} s", (said.route)(route))
+        let time = (said.seconds)(ticks as f32 * fuwafuwa::DEFAULT_TICK);
+        format!("{} {time}", (said.route)(route))
     };
     let times = record.into_iter().flat_map(|record| &record.best);
     let assisted = record.into_iter().flat_map(|record| &record.best_assisted);

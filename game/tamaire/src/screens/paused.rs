@@ -31,7 +31,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             if game.is_in_playground() {
                 options.insert(1, (said.tools, |game| game.go(Screen::Toolbox)));
             }
-            if game.way_to_show().is_some() {
+            if game.may_show_way() {
                 options.insert(2, (said.show_way, Game::show_way));
             }
             menu(ui, &theme, vec2(300.0, 46.0), &options)

@@ -56,7 +56,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             }
             let wishes = &level.game().wish;
             let is_reached = wishes.iter().all(|wish| outcome.fulfils(wish));
-            buttons(ui, &theme, said, is_reached, game.way_to_show().is_some())
+            buttons(ui, &theme, said, is_reached, game.may_show_way())
         })
     });
     perform(game, ui, wanted, to_levels);

@@ -29,8 +29,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 if choice(ui, &theme, said.hand_tool, &mut chosen.tool, &tools) {
                     game.choose_tool(chosen.tool);
                 }
-                toys::air(ui, &theme, said, &mut chosen);
-                game.choose_air(chosen);
+                toys::room_sliders(ui, &theme, said, &mut chosen);
+                game.set_room(chosen);
             });
             ui.add_space(12.0);
             card(ui, &theme, |ui| {

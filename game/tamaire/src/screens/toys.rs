@@ -138,7 +138,9 @@ fn press(game: &mut Game, toy: Toy) {
         Toy::Form(form) => game.add_body(form),
         Toy::Tool(tool) => game.choose_tool(tool),
         Toy::Sliders => game.bout.toys.has_sliders ^= true,
-        Toy::Clear => game.change_playground(Change::Clear),
+        Toy::Clear => {
+            game.change_playground(Change::Clear);
+        }
     }
 }
 
@@ -157,17 +159,17 @@ fn sliders(game: &mut Game, ui: &mut Ui, scale: f32) -> bool {
     let mut child = ui.new_child(UiBuilder::new().max_rect(place));
     card(&mut child, &theme, |ui| {
         ui.set_width(ui.available_width());
-        air(ui, &theme, said, &mut toys);
+        room_sliders(ui, &theme, said, &mut toys);
     });
     let shown = child.min_rect();
     game.controls.covers.push(shown);
     ui.data_mut(|data| data.insert_temp(id, shown.height()));
-    game.choose_air(toys);
+    game.set_room(toys);
     ui.rect_contains_pointer(shown)
 }
 
 /// Shows the sliders for gravity, air and the size of the hand.
-pub(super) fn air(ui: &mut Ui, theme: &Theme, said: &Words, toys: &mut Toys) {
+pub(super) fn room_sliders(ui: &mut Ui, theme: &Theme, said: &Words, toys: &mut Toys) {
     let mut show = |name: &str, value: &mut f32, range: [f32; 3], digits: usize| {
         slider_with(ui, theme, name, value, range, |value| {
             format!("{value:.digits$}")

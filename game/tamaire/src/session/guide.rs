@@ -8,9 +8,7 @@ use tamaire_play::{AnyRound, InputFrame};
 const REST: f32 = 1.0;
 /// Number of times that the ghost shows the move.
 const TIMES: u32 = 2;
-
-/// Distance by which the player's hand moves while the ghost shows the move, from which on the ghost does not show it
-/// again [m].
+/// Movement of the player's hand while the ghost shows the move that prevents a second showing [m].
 const TAKEN_UP: f32 = 0.1;
 
 /// Round in which a ghost plays the first move of a level, [`TIMES`] times, or once if the player goes on meanwhile.
@@ -18,6 +16,8 @@ pub(super) struct Guide {
     round: AnyRound,
     /// Target of the player's hand when the ghost came [m].
     from: Vec3,
+    /// Whether the player has moved the hand since.
+    has_moved: bool,
     /// Number of times that the move has been shown.
     shown: u32,
 }
@@ -29,6 +29,7 @@ impl Guide {
         has_hint.then(|| Self {
             round: AnyRound::new(played.level().clone()),
             from: played.hands()[0].target,
+            has_moved: false,
             shown: 0,
         })
     }
@@ -40,14 +41,14 @@ impl Guide {
 
     /// Plays the next tick, while people play another round. Returns whether the ghost stays.
     pub(super) fn step(&mut self, played: &AnyRound) -> bool {
+        self.has_moved |= (played.hands()[0].target - self.from).length() > TAKEN_UP;
         let seconds = |round: &AnyRound| (round.ticks() + 1) as f32 * DEFAULT_TICK;
         let level = self.round.level().clone();
         let path = &level.game().hint;
         let end = path.last().map_or(0.0, |end| end[0]);
         if seconds(&self.round) > end + REST {
             self.shown += 1;
-            let goes_on = (played.hands()[0].target - self.from).length() > TAKEN_UP;
-            if self.shown == TIMES || goes_on {
+            if self.shown == TIMES || self.has_moved {
                 return false;
             }
             self.round = AnyRound::new(level.clone());

@@ -81,6 +81,7 @@ pub(super) const WORDS: Words = Words {
     },
     new_best: "New best!",
     let_go: "Let go!",
+    seconds: |seconds| format!("{:.1} s", tenths_above(seconds)),
     fill_basket: "fill the basket",
     hopeless: "Not enough of the body is left to win.",
     missed: |wish| {
@@ -105,7 +106,7 @@ pub(super) const WORDS: Words = Words {
     hold_to_rewind: |key| format!("Hold {key} to turn back time."),
     watch: "Watch",
     race: "Race it",
-    show_way: "Show a way",
+    show_way: "Show me how",
     save: "Save replay",
     delete: "Delete",
     confirm: "Really?",
@@ -314,7 +315,7 @@ pub(super) const WORDS: Words = Words {
         parts.extend(wish.seconds.map(|most| format!("{most} s")));
         parts.extend(
             wish.kept
-                .map(|least| format!("≤ {} % torn off", percent_of_limit(1.0 - least))),
+                .map(|least| format!("at most {} % torn off", percent_of_limit(1.0 - least))),
         );
         parts.extend(match (wish.pieces, wish.max_pieces) {
             (None, None) => None,
@@ -329,7 +330,7 @@ pub(super) const WORDS: Words = Words {
             Joints::Broken => "joint broken".to_string(),
         }));
         if !wish.whole.is_empty() {
-            parts.push("nothing fragile broken".to_string());
+            parts.push("nothing fragile broke".to_string());
         }
         parts.extend(
             wish.inside
@@ -449,8 +450,8 @@ pub(super) const WORDS: Words = Words {
     air: "Air drag [1/s]",
     hand_size: "Hand radius [cm]",
     room_is_full: "The room is full.",
-    too_many_pins: "There are too many pins. Clear the room, or go back in time.",
-    too_many_changes: "This round has too many changes. Restart to go on.",
+    too_many_pins: "No more pins fit. Clear the room or rewind.",
+    too_many_changes: "Too many changes at once. Go on playing, or restart.",
     first_move: "The ghost shows a first move.",
     one_hand: "This level has only one hand, so one player plays.",
 };

@@ -83,6 +83,7 @@ pub(super) const WORDS: Words = Words {
     },
     new_best: "新記録！",
     let_go: "手をはなして！",
+    seconds: |seconds| format!("{:.1}秒", tenths_above(seconds)),
     fill_basket: "かごに 入れる",
     missed: |wish| {
         format!(
@@ -104,7 +105,7 @@ pub(super) const WORDS: Words = Words {
     hopeless: "のこりが たりなくて、もうクリアできないよ。",
     watch: "見る",
     race: "きょうそう",
-    show_way: "やりかたを見る",
+    show_way: "やりかたを 見る",
     save: "リプレイを保存",
     delete: "けす",
     confirm: "けしていい？",
@@ -452,8 +453,8 @@ pub(super) const WORDS: Words = Words {
     air: "空気抵抗［1/s］",
     hand_size: "手の半径［cm］",
     room_is_full: "部屋が いっぱいです。",
-    too_many_pins: "ピンが 多すぎます。かたづけるか、時間をもどしてね。",
-    too_many_changes: "へんこうが 多すぎます。さいしょから やりなおしてね。",
+    too_many_pins: "もう ピンを させないよ。かたづけるか、まきもどしてね。",
+    too_many_changes: "いちどに かえすぎたよ。つづけるか、さいしょからやってね。",
     first_move: "おばけが さいしょの うごきを みせるよ。",
     one_hand: "このステージの手は ひとつだけなので、ひとりであそびます。",
 };

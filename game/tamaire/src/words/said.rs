@@ -51,6 +51,8 @@ pub struct Words {
     /// Hint in a hopeless round: how to let time run back, from the name of the key.
     pub hold_to_rewind: fn(&str) -> String,
     pub let_go: &'static str,
+    /// A time in seconds, rounded up to tenths.
+    pub seconds: fn(f32) -> String,
     /// Name of the star for the win.
     pub fill_basket: &'static str,
     pub watch: &'static str,

@@ -98,6 +98,12 @@ fn single_switch_chooses_and_presses_tools_of_a_playground() {
     choose(&mut window, "Back");
     choose(&mut window, "Resume");
     assert_eq!(game(&mut window).bout.round().tool(), (Tool::Grab, false));
+    // The switch that moves the hand presses no tool.
+    wait_for(&mut window, |offer| matches!(offer, ScanAction::Move(_)));
+    window.key_down(Key::Space);
+    frames(&mut window, 5);
+    assert_eq!(game(&mut window).bout.round().tool(), (Tool::Grab, false));
+    window.key_up(Key::Space);
     for is_pressed in [true, false] {
         wait_for(&mut window, |offer| offer == ScanAction::Tool);
         tap(&mut window);

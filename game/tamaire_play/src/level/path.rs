@@ -106,6 +106,7 @@ pub const PATH: &[PathLevel] = &[
     level!(5, "planet"),
     level!(5, "mochi"),
     level!(5, "weightless"),
+    level!(5, "tamaire"),
 ];
 
 impl PathLevel {

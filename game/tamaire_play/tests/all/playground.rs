@@ -206,6 +206,18 @@ fn pins_are_refused_when_there_are_too_many() {
 }
 
 #[test]
+fn dragging_a_slider_in_a_pause_is_one_change() {
+    let mut round = begin("sandbox");
+    for tenths in 0..50 {
+        round.change(Change::Air(tenths)).unwrap();
+    }
+    wait(&mut round, 1);
+    assert_eq!(round.changes().len(), 1);
+    assert_eq!(round.gravity_and_air()[1], 4.9);
+    verify(&round);
+}
+
+#[test]
 fn hand_grows_and_air_brakes() {
     let mut round = begin("sandbox");
     round.change(Change::HandSize(25)).unwrap();
