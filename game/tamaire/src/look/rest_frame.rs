@@ -18,7 +18,7 @@ pub(super) fn frame<'a, C: DimCamera>(
     let baskets = baskets.map(|(basket, &fill)| Basket {
         region: basket.region,
         fill,
-        colour: own_colour(round, basket),
+        colour: own_colour(round, basket, theme),
     });
     Frame {
         camera,
@@ -34,18 +34,26 @@ pub(super) fn frame<'a, C: DimCamera>(
     }
 }
 
-/// Returns the colour of a basket for a single body, in a level with several baskets: that of the body.
-fn own_colour<D: Dim>(round: &Round<D>, basket: &tamaire_play::Basket<D>) -> Option<Colour> {
+/// Maximum lightness of a basket's own colour, 0 to 1: a paler one would not be seen on the floor.
+const LIGHTEST: f32 = 0.62;
+
+/// Returns the colour of a basket for which only some bodies count, if these are of one material: that of the material.
+fn own_colour<D: Dim>(
+    round: &Round<D>,
+    basket: &tamaire_play::Basket<D>,
+    theme: &Theme,
+) -> Option<Colour> {
     let level = round.level();
-    let [body] = basket.bodies[..] else {
-        return None;
-    };
-    if round.baskets().len() < 2 {
+    let material = |body: &usize| level.scene().body[body - 1].material.unwrap_or(1);
+    let first = material(basket.bodies.first()?);
+    if basket.bodies.iter().any(|body| material(body) != first) {
         return None;
     }
-    let material = level.scene().body[body - 1].material.unwrap_or(1);
-    let colour = level.colours().get(usize::from(material) - 1).copied()??;
-    Some(colour.map(|part| f32::from(part) / 255.0))
+    let colour = theme.world.tinted_material(first, level.colours());
+    let [red, green, blue] = colour;
+    let lightness = 0.3 * red + 0.59 * green + 0.11 * blue;
+    let scale = (LIGHTEST / lightness).min(1.0);
+    Some(colour.map(|part| scale * part))
 }
 
 /// Returns the colours that a level gives to its materials.

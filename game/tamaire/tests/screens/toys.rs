@@ -42,6 +42,7 @@ fn tools_are_on_a_page_that_keys_reach() {
         "Tools",
         "Material: Stone",
         "Add a heart",
+        "Add a ball",
         "Hand: Pin: press",
     ] {
         for _ in 0..40 {
