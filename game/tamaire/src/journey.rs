@@ -1,8 +1,8 @@
 //! The player's way along the path: stars, and which chapters are open.
 
-use crate::records::{Records, WishName};
-use tamaire_play::Level;
+use crate::records::{Record, Records, WishName};
 use tamaire_play::level::{CHAPTERS, OPENING_SHARE, PATH};
+use tamaire_play::{Level, Wish};
 
 /// Earned stars and all stars of some levels. A level has a star for the win and one for each of its goals.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
@@ -13,20 +13,29 @@ pub struct Stars {
     pub all: usize,
 }
 
+/// Returns the goal of each star of a level, and whether the star is earned: first that of the win, without a goal, then
+/// those of the wishes. A playground has no win.
+pub fn stars_of<'a>(
+    level: &'a Level,
+    record: Option<&'a Record>,
+) -> impl Iterator<Item = (Option<&'a Wish>, bool)> {
+    let has_basket = !level.game().all_baskets().is_empty();
+    let won = has_basket.then(|| (None, record.is_some_and(Record::is_won)));
+    let wishes = level.game().wish.iter().map(move |wish| {
+        let name = WishName::of(wish);
+        let is_reached = record.is_some_and(|record| record.wishes.contains(&name));
+        (Some(wish), is_reached)
+    });
+    won.into_iter().chain(wishes)
+}
+
 impl Stars {
     /// Returns the stars of a level.
     pub fn of(level: &Level, records: &Records) -> Self {
-        let wishes = &level.game().wish;
-        let record = records.of(&level.id);
-        let earned = record.map_or(0, |record| {
-            let reached = wishes
-                .iter()
-                .filter(|wish| record.wishes.contains(&WishName::of(wish)));
-            usize::from(record.is_won()) + reached.count()
-        });
+        let stars = || stars_of(level, records.of(&level.id));
         Self {
-            earned,
-            all: 1 + wishes.len(),
+            earned: stars().filter(|(_, is_earned)| *is_earned).count(),
+            all: stars().count(),
         }
     }
 

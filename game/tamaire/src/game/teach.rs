@@ -3,6 +3,7 @@
 use super::lesson::Seen;
 use super::{Game, Screen};
 use crate::input::{Action, InputMethod};
+use crate::journey::chapter_of;
 use crate::records::{Record, WishName};
 use crate::session::Session;
 use fuwafuwa::Vec3;
@@ -75,8 +76,7 @@ impl Game {
     /// won it or has given it up four times. Not in calm mode, because things may tear.
     pub fn may_show_way(&self) -> bool {
         let level = self.bout.round().level();
-        let is_on_path = PATH.iter().any(|known| known.id == level.id);
-        let is_built_in = is_on_path && self.listed(level).is_some();
+        let is_built_in = chapter_of(level).is_some() && self.listed(level).is_some();
         let record = self.records.of(&level.id);
         let is_due = record.is_some_and(Record::is_won) || self.bout.lesson.may_see_way();
         is_built_in && is_due && !self.settings.calm

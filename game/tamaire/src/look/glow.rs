@@ -4,7 +4,7 @@
 use super::DrawOptions;
 use app_shell::View;
 use egui::{Color32, Painter, Pos2, Rect, Shape as Drawn, Stroke, pos2, vec2};
-use fuwafuwa::{Dim2, MotionType, Shape, Vec2};
+use fuwafuwa::{Dim2, MotionType, Rotation, Shape, Vec2};
 use tamaire_play::Round;
 
 /// Colour of the glowing bars of a basket.
@@ -98,12 +98,8 @@ fn shine(painter: &Painter, view: &View, shape: Shape<Dim2>, strength: f32) {
                 half,
                 rotation,
             } => {
-                let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-                let corners = corners.map(|[x, y]| {
-                    let own = Vec2::new(x * (half.x + reach), y * (half.y + reach));
-                    on_screen(centre + rotation.apply(own))
-                });
-                painter.add(Drawn::convex_polygon(corners.into(), light, Stroke::NONE));
+                let corners = corners(view, centre, half + Vec2::splat(reach), rotation);
+                painter.add(Drawn::convex_polygon(corners, light, Stroke::NONE));
             }
             Shape::Ball { centre, radius } => {
                 let radius = (radius + reach) * view.scale;
@@ -113,8 +109,18 @@ fn shine(painter: &Painter, view: &View, shape: Shape<Dim2>, strength: f32) {
     }
 }
 
+/// Returns the corners of a rotated box.
+pub(super) fn corners(view: &View, centre: Vec2, half: Vec2, rotation: Rotation) -> Vec<Pos2> {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let corners = corners.map(|[x, y]| {
+        let own = Vec2::new(x * half.x, y * half.y);
+        view.to_screen((centre + rotation.apply(own)).extend(0.0))
+    });
+    corners.into()
+}
+
 /// Returns the outline of a capsule.
-fn bar(from: Pos2, to: Pos2, radius: f32) -> Vec<Pos2> {
+pub(super) fn bar(from: Pos2, to: Pos2, radius: f32) -> Vec<Pos2> {
     let turn = (to - from).angle();
     let end = |middle: Pos2, first: f32| {
         (0..=12).map(move |step| {

@@ -10,7 +10,6 @@ use egui::{Color32, Painter, Shape, Stroke, Ui};
 use fuwafuwa::inspect::{hands, obstacles};
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, MotionType, RigidBodyRef, Vec3};
 use fuwafuwa_render::{Ages, Cost, Frame, Outlines, Particle, Renderer, Sticker, space};
-use std::f32::consts::PI;
 use std::sync::{Arc, Mutex};
 use tamaire_play::{AnyRound, Level, Round};
 
@@ -222,24 +221,13 @@ fn paint_shape(
             half,
             rotation,
         } => {
-            let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-            let corners = corners.map(|[x, y]| {
-                let away = Vec3::new(x * half.x, y * half.y, 0.0);
-                screen(centre.to_vec3() + rotation.apply(away))
-            });
-            painter.add(Shape::convex_polygon(corners.to_vec(), fill, stroke));
+            let corners = glow::corners(view, centre, half, rotation);
+            painter.add(Shape::convex_polygon(corners, fill, stroke));
         }
         fuwafuwa::Shape::Capsule { from, to, radius } => {
             let [from, to] = [from, to].map(|end| screen(end.to_vec3()));
-            let along = (to - from).angle();
-            let half = |end: egui::Pos2, first: f32| {
-                (0..=12).map(move |step| {
-                    let angle = first + PI * step as f32 / 12.0;
-                    end + view.scale * radius * egui::Vec2::angled(angle)
-                })
-            };
-            let outline = half(to, along - 0.5 * PI).chain(half(from, along + 0.5 * PI));
-            painter.add(Shape::convex_polygon(outline.collect(), fill, stroke));
+            let outline = glow::bar(from, to, view.scale * radius);
+            painter.add(Shape::convex_polygon(outline, fill, stroke));
         }
     }
 }

@@ -5,9 +5,9 @@ use super::confirmation::{is_pending, set_pending};
 use super::icons;
 use super::widgets::{dim_background, header_to_open, page, page_rect, words};
 use crate::game::Game;
-use crate::journey::{Journey, Lock, Section, Stars};
+use crate::journey::{Journey, Lock, Section, Stars, stars_of};
 use crate::look::{Maps, Stage};
-use crate::records::{Record, WishName};
+use crate::records::Record;
 use crate::words::{Language, Words};
 use app_shell::Theme;
 use app_shell::widgets::{ButtonStyle, button, fitted, focus_ring, highlight, is_on, plain_button};
@@ -261,7 +261,9 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
     let record = game.records.of(&level.id);
     let base = rect.bottom() - 26.0;
     let mut x = rect.center().x;
-    let stars = stars_of(level, record);
+    let stars: Vec<bool> = stars_of(level, record)
+        .map(|(_, is_earned)| is_earned)
+        .collect();
     let routes = level.routes();
     let gap = if routes.is_empty() { 0.0 } else { 16.0 };
     let width = 24.0 * stars.len() as f32 + gap + 32.0 * routes.len() as f32;
@@ -320,15 +322,6 @@ fn draw_best_time(painter: &Painter, theme: &Theme, said: &Words, map: Rect, rec
     painter.galley(place.min + vec2(8.0, 3.0), galley, ink);
 }
 
-/// Returns whether each star of a level is earned: first that of the win, then those of its goals. A playground has none.
-fn stars_of(level: &Level, record: Option<&Record>) -> Vec<bool> {
-    let has_basket = !level.game().all_baskets().is_empty();
-    let won = has_basket.then(|| record.is_some_and(Record::is_won));
-    let wishes = level.game().wish.iter().map(WishName::of);
-    let reached = wishes.map(|name| record.is_some_and(|record| record.wishes.contains(&name)));
-    won.into_iter().chain(reached).collect()
-}
-
 fn star(is_earned: bool) -> &'static str {
     if is_earned { "★" } else { "☆" }
 }
@@ -336,14 +329,10 @@ fn star(is_earned: bool) -> &'static str {
 /// Shows a tooltip with the stars and best times of a level.
 fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<&Record>) {
     let (theme, said) = (game.theme(), game.words());
-    let wishes = level.game().wish.iter().map(|wish| (said.wish)(wish));
-    let has_basket = !level.game().all_baskets().is_empty();
-    let won = has_basket.then(|| said.fill_basket.to_string());
-    let names = won.into_iter().chain(wishes);
-    let stars = stars_of(level, record).into_iter().map(star);
-    let wishes = stars
-        .zip(names)
-        .map(|(star, name)| format!("{star} {name}"));
+    let stars = stars_of(level, record).map(|(wish, is_earned)| {
+        let name = wish.map_or(said.fill_basket.to_string(), said.wish);
+        format!("{} {name}", star(is_earned))
+    });
     let time = |(&route, &ticks): (&Route, &u64)| {
         let time = (said.seconds)(ticks as f32 * fuwafuwa::DEFAULT_TICK);
         format!("{} {time}", (said.route)(route))
@@ -354,7 +343,7 @@ fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<
     let rewound = record.into_iter().flat_map(|record| &record.best_rewound);
     let rewound = rewound.map(|best| format!("{}, {}", time(best), said.rewound));
     let times = times.map(time).chain(rewound).chain(assisted);
-    let lines: Vec<String> = wishes.chain(times).collect();
+    let lines: Vec<String> = stars.chain(times).collect();
     if lines.is_empty() {
         return;
     }

@@ -70,7 +70,7 @@ pub(super) const WORDS: Words = Words {
     },
     summary: |outcome| {
         [
-            ("Time", format!("{:.1} s", tenths_above(outcome.seconds()))),
+            ("Time", time(outcome.seconds())),
             ("Torn off", format!("{} %", percent_lost(outcome))),
             (
                 "In the basket",
@@ -81,7 +81,7 @@ pub(super) const WORDS: Words = Words {
     },
     new_best: "New best!",
     let_go: "Let go!",
-    seconds: |seconds| format!("{:.1} s", tenths_above(seconds)),
+    seconds: time,
     fill_basket: "fill the basket",
     hopeless: "Not enough of the body is left to win.",
     missed: |wish| {
@@ -346,9 +346,7 @@ pub(super) const WORDS: Words = Words {
     near_miss: |wish, outcome| {
         let missed = outcome.misses(wish);
         let parts = [
-            missed
-                .seconds
-                .map(|_| format!("{:.1} s", tenths_above(outcome.seconds()))),
+            missed.seconds.map(|_| time(outcome.seconds())),
             missed
                 .kept
                 .map(|_| format!("{} % torn off", percent_lost(outcome))),
@@ -455,6 +453,11 @@ pub(super) const WORDS: Words = Words {
     first_move: "The ghost shows a first move.",
     one_hand: "This level has only one hand, so one player plays.",
 };
+
+/// Returns a time in seconds, rounded up to tenths.
+fn time(seconds: f32) -> String {
+    format!("{:.1} s", tenths_above(seconds))
+}
 
 fn import_note(note: &ImportNote) -> String {
     let file = &note.file;

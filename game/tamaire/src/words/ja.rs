@@ -72,10 +72,7 @@ pub(super) const WORDS: Words = Words {
     },
     summary: |outcome| {
         [
-            (
-                "タイム",
-                format!("{:.1}秒", tenths_above(outcome.seconds())),
-            ),
+            ("タイム", time(outcome.seconds())),
             ("ちぎれた", format!("{}％", percent_lost(outcome))),
             ("かごの中", format!("{}％", percent_below(outcome.inside))),
             ("かけら", format!("{}こ", outcome.pieces)),
@@ -83,7 +80,7 @@ pub(super) const WORDS: Words = Words {
     },
     new_best: "新記録！",
     let_go: "手をはなして！",
-    seconds: |seconds| format!("{:.1}秒", tenths_above(seconds)),
+    seconds: time,
     fill_basket: "かごに 入れる",
     missed: |wish| {
         format!(
@@ -349,7 +346,7 @@ pub(super) const WORDS: Words = Words {
         let parts = [
             missed
                 .seconds
-                .map(|_| format!("{:.1}秒だった", tenths_above(outcome.seconds()))),
+                .map(|_| format!("{}だった", time(outcome.seconds()))),
             missed
                 .kept
                 .map(|_| format!("{}％ ちぎれた", percent_lost(outcome))),
@@ -458,6 +455,11 @@ pub(super) const WORDS: Words = Words {
     first_move: "おばけが さいしょの うごきを みせるよ。",
     one_hand: "このステージの手は ひとつだけなので、ひとりであそびます。",
 };
+
+/// Returns a time in seconds, rounded up to tenths.
+fn time(seconds: f32) -> String {
+    format!("{:.1}秒", tenths_above(seconds))
+}
 
 fn import_note(note: &ImportNote) -> String {
     let file = &note.file;
