@@ -88,6 +88,7 @@ mod error;
 mod game;
 mod grid;
 mod joint;
+mod knife;
 mod machinery;
 mod materials;
 mod rigid_body;
@@ -103,6 +104,7 @@ pub use game::{
     WishText,
 };
 pub use joint::{JointAnchorText, JointKindText, JointText};
+pub use knife::KnifeText;
 pub use machinery::{FieldText, Machinery, SwitchText, SwitchedBy};
 pub use rigid_body::{MotionTypeText, RigidBodyText};
 pub(crate) use shapes::set_hand_targets;
@@ -130,7 +132,7 @@ pub const MAX_MATERIALS: usize = 255;
 /// Maximum number of bodies in a scene.
 pub const MAX_BODIES: usize = 1024;
 
-/// Maximum number of entries in each of the lists `obstacle`, `hand`, `rigid_body` and `joint`. It bounds the time
+/// Maximum number of entries in each of the lists `obstacle`, `hand`, `rigid_body`, `joint` and `knife`. It bounds the time
 /// of a step, because moving nodes are tested against every rigid body.
 pub const MAX_RIGID: usize = 256;
 
@@ -191,6 +193,9 @@ pub struct Scene {
     /// Joints between bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joint: Vec<JointText>,
+    /// Knives on hands and moving obstacles.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub knife: Vec<KnifeText>,
     /// Regions that move obstacles and open joints when something is in them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub switch: Vec<SwitchText>,
@@ -332,6 +337,7 @@ impl Scene {
             ("hand", self.hand.len()),
             ("rigid_body", self.rigid_body.len()),
             ("joint", self.joint.len()),
+            ("knife", self.knife.len()),
             ("switch", self.switch.len()),
             ("field", self.field.len()),
         ];
@@ -381,6 +387,10 @@ impl Scene {
         for (index, text) in self.joint.iter().enumerate() {
             let added = text.add_to(&mut world, &known);
             added.map_err(|wrong| wrong.inside("joint", index))?;
+        }
+        for (index, text) in self.knife.iter().enumerate() {
+            let added = text.add_to(&mut world, &known);
+            added.map_err(|wrong| wrong.inside("knife", index))?;
         }
         Ok(world)
     }

@@ -85,6 +85,11 @@ impl AnyRound {
         both!(self, round => !round.baskets().is_empty())
     }
 
+    /// See [`Round::is_weightless`].
+    pub fn is_weightless(&self) -> bool {
+        both!(self, round => round.is_weightless())
+    }
+
     /// See [`Round::distance_to_bodies`].
     pub fn distance_to_bodies(&self, position: Vec3) -> f32 {
         both!(self, round => round.distance_to_bodies(DimVector::from_vec3(position)))

@@ -5,8 +5,9 @@ use crate::rules::Basket;
 use crate::{InputFrame, Level, PLAYERS, Progress};
 use fuwafuwa::inspect::is_hand;
 use fuwafuwa::{
-    DEFAULT_TICK, Dim, Dim3, DimAngular, DimVector, JointAnchor, JointHandle, Layers, Reaction,
-    RigidBody, RigidBodyHandle, RigidBodyRef, Shape, SoftBody, StepReport, Vec3, World,
+    DEFAULT_TICK, Dim, Dim3, DimAngular, DimVector, JointAnchor, JointHandle, Knife, KnifeHandle,
+    Layers, Reaction, RigidBody, RigidBodyHandle, RigidBodyRef, Shape, SoftBody, StepReport, Vec3,
+    World,
 };
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::Machinery;
@@ -122,12 +123,15 @@ impl<D: Dim> Round<D> {
         let (mut world, baskets) = level.build::<D>();
         let machinery = Machinery::new(level.scene(), &world);
         let (mut players, starts) = hands_of(level.scene(), &world);
-        // Removes the hands of all players except the first, with their joints. The hands return when their players
-        // join, the joints do not.
+        // Removes the hands of all players except the first, with their joints and knives. The hands return with their
+        // knives when their players join, the joints do not.
         for player in players.drain(1.min(players.len())..) {
             for hand in player.parts() {
                 for joint in joints_of(&world, hand) {
                     world.remove(joint).expect("the world has this joint");
+                }
+                for knife in knives_of(&world, hand) {
+                    world.remove(knife).expect("the world has this knife");
                 }
                 world.remove(hand).expect("the world has this hand");
             }
@@ -360,6 +364,11 @@ impl<D: Dim> Round<D> {
         &self.world
     }
 
+    /// Returns whether nothing falls: the level has neither gravity nor fields.
+    pub fn is_weightless(&self) -> bool {
+        !self.machinery.has_fields() && self.world.config().gravity == D::Vector::ZERO
+    }
+
     /// Returns the hands of the players that have joined, in the order of the players.
     pub fn hands(&self) -> impl ExactSizeIterator<Item = RigidBodyRef<'_, D>> {
         self.players.iter().map(|player| self.hand(player.hand))
@@ -482,7 +491,14 @@ impl<D: Dim> Round<D> {
             let hand = add(start.hand);
             let followers = start.followers.iter();
             let followers = followers.map(|&(_, hand)| add(hand)).collect();
-            self.players.push(PlayerHand { hand, followers });
+            let player = PlayerHand { hand, followers };
+            for (holder, knives) in player.parts().zip(&start.knives) {
+                for knife in knives {
+                    let added = self.world.add_knife(Knife { holder, ..*knife });
+                    added.expect("the world accepted this knife when the level was checked");
+                }
+            }
+            self.players.push(player);
         }
     }
 
@@ -516,6 +532,8 @@ struct StartHand<D: Dim> {
     hand: RigidBody<D>,
     /// Hands that follow it, and their indices in the scene.
     followers: Vec<(usize, RigidBody<D>)>,
+    /// Knives of the hand and of each hand that follows it.
+    knives: Vec<Vec<Knife<D>>>,
 }
 
 /// Hand of a player in the world.
@@ -548,9 +566,14 @@ fn hands_of<D: Dim>(scene: &Scene, world: &World<D>) -> (Vec<PlayerHand>, Vec<St
             hand: all[index].0,
             followers: handles,
         };
+        let knives = player.parts().map(|hand| {
+            let knives = world.knives().map(|(_, knife)| knife.definition());
+            knives.filter(|knife| knife.holder == hand).collect()
+        });
         let start = StartHand {
             hand: all[index].1.definition(),
             followers: starts,
+            knives: knives.collect(),
         };
         (player, start)
     });
@@ -566,6 +589,13 @@ fn joints_of<D: Dim>(world: &World<D>, rigid: RigidBodyHandle) -> Vec<JointHandl
     let joints = world.joints();
     let joints = joints.filter(|(_, joint)| joint.definition().anchors.into_iter().any(is_on));
     joints.map(|(joint, _)| joint).collect()
+}
+
+/// Returns the knives of a rigid body.
+fn knives_of<D: Dim>(world: &World<D>, rigid: RigidBodyHandle) -> Vec<KnifeHandle> {
+    let knives = world.knives();
+    let knives = knives.filter(|(_, knife)| knife.definition().holder == rigid);
+    knives.map(|(knife, _)| knife).collect()
 }
 
 /// Returns the targets of all hands of a level at the start [m]. In 2D the third coordinate is zero.
@@ -595,7 +625,7 @@ fn near(from: Vec3, wish: Vec3, most: f32) -> Vec3 {
 mod tests {
     use super::*;
     use crate::{Replay, Route};
-    use fuwafuwa::Dim2;
+    use fuwafuwa::{Dim2, KnifeRef};
 
     #[test]
     fn recording_stops_after_an_hour() {
@@ -661,5 +691,26 @@ mod tests {
         let mut scene = Level::open("classic").unwrap().scene().clone();
         scene.hand[0].path = vec![[0.0, 1.0, 2.0, 0.0], [1.0, 7.0, 2.0, 0.0]];
         assert_eq!(start_targets(&scene)[0], Vec3::new(1.0, 2.0, 0.0));
+    }
+
+    #[test]
+    fn second_hand_returns_with_its_knife() {
+        let text = include_str!("../levels/classic.toml");
+        let edge = "edge = [[-1.4, 0.0, 0.0], [-1.4, 0.0, 0.0]]\ntoward = [1.0, 0.0, 0.0]\n";
+        let knives = [1, 2]
+            .map(|hand| format!("[[knife]]\nhand = {hand}\n{edge}"))
+            .concat();
+        let text = format!("{text}\n{knives}");
+        let none = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+        let level = Level::read("knives", text.as_bytes(), &none).unwrap();
+        let mut round = Round::<Dim2>::new(Arc::new(level));
+        assert_eq!(round.world().knives().count(), 1);
+        round.step(InputFrame::default().with(1, round.start(1).to_vec3()));
+        let knives = round.world().knives();
+        let holder =
+            |knife: KnifeRef<'_, Dim2>| round.world().rigid_body(knife.definition().holder);
+        let holders: Vec<_> = knives.map(|(_, knife)| holder(knife).unwrap()).collect();
+        assert_eq!(holders.len(), 2);
+        assert!(holders.iter().all(|holder| is_hand(*holder)) && round.hands().len() == 2);
     }
 }

@@ -60,12 +60,31 @@ pub struct JointAnchorText {
     pub radius: Option<f32>,
 }
 
-/// Handles of possible joint targets, in the order of their lists.
+/// Handles of possible targets of joints and holders of knives, in the order of their lists.
 pub(super) struct JointTargets {
     pub(super) bodies: Vec<SoftBodyHandle>,
     pub(super) obstacles: Vec<RigidBodyHandle>,
     pub(super) hands: Vec<RigidBodyHandle>,
     pub(super) rigid_bodies: Vec<RigidBodyHandle>,
+}
+
+impl JointTargets {
+    /// Returns the rigid body with the number of an obstacle, of a hand or of a rigid body, in this order. `None`
+    /// without a number.
+    pub(super) fn rigid(
+        &self,
+        numbers: [Option<usize>; 3],
+    ) -> Result<Option<RigidBodyHandle>, FieldError> {
+        let lists = [
+            ("obstacle", &self.obstacles),
+            ("hand", &self.hands),
+            ("rigid_body", &self.rigid_bodies),
+        ];
+        let mut named = lists.into_iter().zip(numbers);
+        let named = named.find_map(|((field, list), number)| Some((field, list, number?)));
+        let body = named.map(|(field, list, number)| nth(field, number, list));
+        body.transpose()
+    }
 }
 
 impl JointText {
@@ -154,13 +173,8 @@ impl JointAnchorText {
         let point = vector_of::<D>("point", self.point)?;
         let good = self.body.is_some() || self.radius.is_none();
         require(good, "radius", "allowed only with a body")?;
-        let is_rigid = [
-            ("obstacle", self.obstacle, &known.obstacles),
-            ("hand", self.hand, &known.hands),
-            ("rigid_body", self.rigid_body, &known.rigid_bodies),
-        ];
-        let named = is_rigid.iter().filter(|(_, number, _)| number.is_some());
-        let count = named.clone().count() + usize::from(self.body.is_some());
+        let rigid = [self.obstacle, self.hand, self.rigid_body];
+        let count = rigid.iter().flatten().count() + usize::from(self.body.is_some());
         let expected = "expected at most one of body, obstacle, hand and rigid_body; none for a fixed point of the world";
         require(count <= 1, "body", expected)?;
         if let Some(number) = self.body {
@@ -168,11 +182,8 @@ impl JointAnchorText {
             let radius = self.radius.unwrap_or(0.0);
             return Ok(JointAnchor::on(body, point).within(radius));
         }
-        for &(field, number, list) in &is_rigid {
-            if let Some(number) = number {
-                let body = nth(field, number, list)?;
-                return Ok(JointAnchor::on(body, point));
-            }
+        if let Some(body) = known.rigid(rigid)? {
+            return Ok(JointAnchor::on(body, point));
         }
         Ok(JointAnchor::Point(point))
     }

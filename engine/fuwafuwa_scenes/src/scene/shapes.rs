@@ -119,6 +119,9 @@ pub struct HandText {
     pub friction: Option<f32>,
     /// Contact layers.
     pub layers: Option<LayersText>,
+    /// Whether the hand touches nothing, so that only a knife on it meets bodies; default false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub sensor: bool,
     /// Number of the hand that this one follows: it moves as that hand does, at the same distance. Such hands are parts
     /// of a player's hand, as the tines of a fork.
     pub follows: Option<usize>,
@@ -368,6 +371,7 @@ impl HandText {
             .with_layers(self.layers.map(Into::into).unwrap_or_default());
         let hand = RigidBody {
             friction: self.friction.unwrap_or(hand.friction),
+            is_sensor: self.sensor,
             user_data: player.map_or(0, |player| FOLLOWING_HAND + player as u64),
             ..hand
         };

@@ -3,6 +3,7 @@
 use super::body::{BodyText, LayersText, MaterialText, VoxelsText};
 use super::error::{FieldError, Origin, require};
 use super::joint::{JointAnchorText, JointText};
+use super::knife::KnifeText;
 use super::rigid_body::RigidBodyText;
 use super::state;
 use super::{MAX_BODIES, MAX_MATERIALS, MAX_RIGID, MAX_TEXT_BYTES, Scene, SceneError};
@@ -18,13 +19,13 @@ use std::fmt::Write;
 const NEAR: f32 = 1e-3;
 
 impl Scene {
-    /// Describes the current state of a world: settings, bodies, rigid bodies, joints.
+    /// Describes the current state of a world: settings, bodies, rigid bodies, joints, knives.
     ///
     /// Where possible, a body is described by fields: a soft body by its voxels, materials, position and
     /// velocity, a rigid body by its shape, motion type, pose and velocity. If fields cannot reproduce a body
     /// bit by bit (a torn or deformed body), its complete state is stored in `state`,
     /// which is not human-readable. A world that was not stepped since it was built therefore gives a scene
-    /// that rebuilds it with the same [hash](World::hash).
+    /// that rebuilds it with the same [hash](World::hash), except for rounding of the edges of knives.
     ///
     /// Not included are contacts, events, sleep timers, the number of ticks and the paths of hands. To
     /// continue a world with bit-identical results, save it with [`fuwafuwa::snapshot`].
@@ -89,6 +90,7 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
         hand: Vec::new(),
         rigid_body: Vec::new(),
         joint: Vec::new(),
+        knife: Vec::new(),
         switch: Vec::new(),
         field: Vec::new(),
         game: None,
@@ -119,6 +121,10 @@ fn written<D: Dim>(world: &World<D>) -> Result<Scene, FieldError> {
             .push(text.map_err(|wrong| wrong.inside("rigid_body", index))?);
     }
     write_joints(world, &mut scene)?;
+    // A knife on a removed rigid body does not cut.
+    let knives = world.knives();
+    let knives = knives.filter_map(|(_, knife)| KnifeText::of(world, knife));
+    scene.knife.extend(knives);
     Ok(scene)
 }
 

@@ -1,6 +1,6 @@
 //! Moving obstacles, switches, fields, and hands that follow another one.
 
-use fuwafuwa::{Dim2, RigidBodyRef, Vec2, World};
+use fuwafuwa::{Dim2, Event, RigidBodyRef, Vec2, World};
 use fuwafuwa_scenes::Recording;
 use fuwafuwa_scenes::scene::{Machinery, Scene};
 
@@ -199,4 +199,39 @@ fn mistakes_name_line_and_field() {
             "{error}"
         );
     }
+}
+
+#[test]
+fn knife_on_a_hand_cuts_a_body_in_two() {
+    let floor =
+        "[[obstacle]]\nhalf_space = { normal = [0.0, 1.0, 0.0], point = [0.0, -0.1, 0.0] }\n";
+    let hand = "[[hand]]\nradius = 0.05\nsensor = true\npath = [[0.0, 0.0, 0.6, 0.0], [2.0, 0.0, 0.0, 0.0]]\n";
+    let knife = "[[knife]]\nhand = 1\nedge = [[0.01, 0.4, 0.0], [0.01, 0.4, 0.0]]\ntoward = [0.0, -1.0, 0.0]\n";
+    for (parts, pieces) in [
+        (&[BALL, floor, hand][..], 1),
+        (&[BALL, floor, hand, knife], 2),
+    ] {
+        let (scene, mut world, _) = built(parts);
+        for tick in 0..150 {
+            scene.set_hand_targets(&mut world, tick);
+            world.step();
+        }
+        let body = world.soft_bodies().next().unwrap().1;
+        assert_eq!(body.piece_views().len(), pieces);
+    }
+}
+
+#[test]
+fn saw_of_knives_on_a_turning_obstacle_cuts_what_comes_near() {
+    let saw = "[[obstacle]]\nball = { centre = [0.3, 0.0, 0.0], radius = 0.1 }\nangular_velocity = [0.0, 0.0, 6.0]\n";
+    let knife = "[[knife]]\nobstacle = 1\nedge = [[0.55, 0.0, 0.0], [0.55, 0.0, 0.0]]\ntoward = [0.0, 1.0, 0.0]\n";
+    let (_, mut world, mut machinery) = built(&[BALL, saw, knife]);
+    let mut cuts = 0;
+    for _ in 0..120 {
+        machinery.step(&mut world);
+        cuts += { world.events().iter() }
+            .filter(|event| matches!(event, Event::Cut { .. }))
+            .count();
+    }
+    assert!(cuts > 0);
 }

@@ -95,6 +95,13 @@ stiffness = 200.0
 damping = 3.0
 length = 0.4
 anchors = [{ hand = 1, point = [-0.5, 0.5, 0.0] }, { rigid_body = 1, point = [0.4, 1.4, 0.0] }]
+
+[[knife]]
+rigid_body = 3
+edge = [[-0.35, 1.0, FLAT], [-0.35, 1.0, 0.0]]
+toward = [1.0, 0.0, 0.0]
+radius = 1e-4
+height = 0.1
 "#;
 
 fn rich(dim: u8) -> String {
@@ -328,6 +335,31 @@ fn error_names_line_and_field() {
             "{ point = [0.4, 1.6, 0.0] }",
             "{ point = [0.4, 1.6, 0.0], radius = 1.0 }",
             "joint 2, anchors 2, radius: allowed only with a body",
+        ),
+        (
+            "rigid_body = 3\nedge",
+            "rigid_body = 4\nedge",
+            "knife 1, rigid_body: expected a hand, an obstacle with a path or an angular_velocity, or a kinematic",
+        ),
+        (
+            "rigid_body = 3\nedge",
+            "edge",
+            "knife 1, hand: expected one of obstacle, hand and rigid_body",
+        ),
+        (
+            "rigid_body = 3\nedge",
+            "hand = 2\nedge",
+            "knife 1, hand: expected 1, found 2",
+        ),
+        (
+            "toward = [1.0, 0.0, 0.0]",
+            "toward = [0.0, 0.0, 0.0]",
+            "knife 1, toward: expected a direction, of a length of 0.01 to 100",
+        ),
+        (
+            "radius = 1e-4",
+            "radius = 2.0",
+            "knife 1, radius: expected 0 to 1 m, found 2",
         ),
         (
             "gravity_scale = 0.5",

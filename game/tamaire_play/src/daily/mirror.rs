@@ -23,6 +23,10 @@ pub(super) fn mirrored(scene: &Scene) -> Option<Scene> {
     }
     let anchors = scene.joint.iter_mut().flat_map(|joint| &mut joint.anchors);
     anchors.for_each(|anchor| flip(&mut anchor.point));
+    for knife in &mut scene.knife {
+        knife.edge.iter_mut().for_each(flip);
+        flip(&mut knife.toward);
+    }
     for switch in &mut scene.switch {
         turn_shapes(None, &mut switch.boxed, None, &mut switch.ball);
     }
