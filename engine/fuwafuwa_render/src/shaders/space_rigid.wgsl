@@ -129,7 +129,24 @@ fn bar(in: RoundedCorner) -> @location(0) vec4f {
     let stuff = select(mix(0.82, 1.12, rings), mix(0.62, 1.1, folds), in.number > 0.5);
     let base = to_linear(in.colour.rgb) * stuff;
     let lit = lacquered(base, normal, towards_eye(in.at), select(0.35, 0.1, in.number > 0.5));
-    return shown(under_hands(in_light(lit, in.at, normal), in.at, normal), 1.0);
+    return shown(under_hands(in_light(lit, in.at, normal), in.at, normal), in.colour.a);
+}
+
+// Distance of a point on the surface of a box from the nearest edge. The smallest component of its distance from the
+// faces is 0; the middle one belongs to the edge, which runs along the axis of the largest one.
+fn to_edge(beyond: vec3f) -> f32 {
+    let least = min(beyond.x, min(beyond.y, beyond.z));
+    let most = max(beyond.x, max(beyond.y, beyond.z));
+    return beyond.x + beyond.y + beyond.z - least - most;
+}
+
+// A pane with bright edges.
+@fragment
+fn glass(in: RoundedCorner) -> @location(0) vec4f {
+    let away = 1.0 - abs(dot(normalize(in.normal), towards_eye(in.at)));
+    let edge = 1.0 - smoothstep(0.008, 0.02, to_edge(in.reach - abs(in.own)));
+    let colour = mix(to_linear(in.colour.rgb), vec3f(1.0), 0.3 * edge);
+    return shown(colour, max(0.2 + 0.4 * smoothstep(0.55, 0.95, away), 0.75 * edge));
 }
 
 @fragment
@@ -187,11 +204,8 @@ fn line(in: RoundedCorner) -> @location(0) vec4f {
 @fragment
 fn glow(in: RoundedCorner, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
     let beyond = in.reach - abs(in.own);
-    // On a face of the box the smallest component is 0; the middle one is the distance to the nearest edge,
-    // which runs along the axis of the largest one.
-    let least = min(beyond.x, min(beyond.y, beyond.z));
     let most = max(beyond.x, max(beyond.y, beyond.z));
-    let edge = beyond.x + beyond.y + beyond.z - least - most;
+    let edge = to_edge(beyond);
     let breath = 0.5 + 0.5 * sin(BREATHS * globals.tune.x);
     let strength = 0.10 + 0.03 * breath + 0.22 * in.number;
     var along = in.own.x;

@@ -22,6 +22,13 @@ const CRUMB: f32 = 0.62;
 /// camera distance.
 const LINE: f32 = 0.004;
 const LINE_SHARE: f32 = 0.002;
+/// Shares of a basket, 0 to 1: a bar that hides more than the first one begins to be translucent, and from the second
+/// one on it has the opacity `THIN`.
+const HIDDEN: [f32; 2] = [0.25, 0.5];
+const THIN: f32 = 0.42;
+/// Distance at which a line of sight has met a bar, as a multiple of its length, and the maximum number of its steps.
+const NEAR: f32 = 1e-3;
+const SIGHT_STEPS: usize = 24;
 
 /// Vertices of a 3D world. Keep the value between frames to reuse its buffers.
 #[derive(Clone, Debug, Default)]
@@ -37,14 +44,16 @@ pub struct Geometry {
     pub(crate) room: Vec<RoomVertex>,
     /// Outward normal and offset [m] of each half-space.
     pub(crate) walls: Vec<[f32; 4]>,
-    /// Instances of bars, hands, props, ghost hands and glass, crumbs, dust, lines below hands, and the basket, in this
-    /// order.
+    /// Instances of bars, hands, props, glass, ghost hands, crumbs, dust, lines below hands, and the basket, in this
+    /// order. Bars that hide a basket come last among the bars.
     pub(crate) rounded: Vec<RoundedInstance>,
     pub(crate) bars: Range<u32>,
+    /// Bars that hide a basket, which are translucent.
+    pub(crate) thin_bars: Range<u32>,
     pub(crate) hands: Range<u32>,
     pub(crate) props: Range<u32>,
-    /// Hands of the ghost world, and glass.
-    pub(crate) clear: Range<u32>,
+    pub(crate) glass: Range<u32>,
+    pub(crate) ghost_hands: Range<u32>,
     pub(crate) crumbs: Range<u32>,
     pub(crate) dust: Range<u32>,
     pub(crate) lines: Range<u32>,
@@ -60,15 +69,21 @@ impl Geometry {
         self.stickers.clear();
         let palette = frame.palette;
         let colours = frame.colours();
-        let bars = obstacles(world).filter(|bar| !is_glass(*bar));
-        let bars = bars.filter_map(|bar| {
+        let (glass, bars): (Vec<_>, Vec<_>) = obstacles(world).partition(|bar| is_glass(*bar));
+        let bars = bars.into_iter().filter_map(|bar| {
             let (colour, fabric) = match is_curtain(world, bar) {
                 true => (palette.curtain, 1.0),
                 false => (palette.bar, 0.0),
             };
-            RoundedInstance::of(bar.shape(), colour, fabric)
+            let mut instance = RoundedInstance::of(bar.shape(), colour, fabric)?;
+            let hidden = { frame.baskets.iter() }
+                .map(|basket| hidden_share(&bar.shape(), &basket.region, frame.camera.eye()));
+            instance.colour[3] = opacity(hidden.fold(0.0, f32::max));
+            Some(instance)
         });
+        let (thin, bars): (Vec<_>, Vec<_>) = bars.partition(|bar| bar.colour[3] < 1.0);
         self.bars = append(&mut self.rounded, bars);
+        self.thin_bars = append(&mut self.rounded, thin);
         self.hands = append(&mut self.rounded, balls(world, palette));
         let props = frame.props.iter();
         let props = props.filter_map(|prop| RoundedInstance::of(prop.shape, prop.colour, 0.0));
@@ -83,13 +98,11 @@ impl Geometry {
             });
             self.renewed_ghosts.extend(renewed);
         }
-        let of_ghost = frame
-            .ghost
-            .into_iter()
-            .flat_map(|ghost| balls(ghost, palette));
-        let glass = obstacles(world).filter(|bar| is_glass(*bar));
+        let glass = glass.into_iter();
         let glass = glass.filter_map(|bar| RoundedInstance::of(bar.shape(), palette.glass, 0.0));
-        self.clear = append(&mut self.rounded, of_ghost.chain(glass));
+        self.glass = append(&mut self.rounded, glass);
+        let of_ghost = { frame.ghost.into_iter() }.flat_map(|ghost| balls(ghost, palette));
+        self.ghost_hands = append(&mut self.rounded, of_ghost);
         self.skins
             .resize_with(world.soft_bodies().count(), Skin::default);
         self.renewed.clear();
@@ -178,6 +191,37 @@ fn balls(world: &World<Dim3>, palette: &Palette) -> impl Iterator<Item = Rounded
     })
 }
 
+/// Returns the opacity of a bar that hides a share of a basket.
+fn opacity(hidden: f32) -> f32 {
+    let most = ((hidden - HIDDEN[0]) / (HIDDEN[1] - HIDDEN[0])).clamp(0.0, 1.0);
+    1.0 - (1.0 - THIN) * most
+}
+
+/// Returns the share of a basket, 0 to 1, that a bar hides from the eye.
+fn hidden_share(bar: &Shape<Dim3>, basket: &Shape<Dim3>, eye: Vec3) -> f32 {
+    let [low, high] = basket.bounds();
+    let hides = |place: &usize| {
+        let step = Vec3::new(
+            (place % 3) as f32,
+            (place / 3 % 3) as f32,
+            (place / 9) as f32,
+        );
+        let at = low + (high - low) * (step + 0.5) / 3.0;
+        let (reach, mut along) = (eye.distance(at), 0.0);
+        // The sight goes on by the distance to the bar until it meets it or passes it.
+        for _ in 0..SIGHT_STEPS {
+            let away = bar.distance(eye.lerp(at, along / reach)).0;
+            along += away;
+            if away < NEAR * reach || reach <= along {
+                break;
+            }
+        }
+        along < reach
+    };
+    let samples = 27;
+    (0..samples).filter(hides).count() as f32 / samples as f32
+}
+
 /// Appends instances and returns their index range.
 fn append(
     all: &mut Vec<RoundedInstance>,
@@ -228,6 +272,44 @@ fn crumb(
 mod tests {
     use super::*;
     use fuwafuwa::{Material, RigidBody, VoxelGrid, WorldConfig};
+
+    #[test]
+    fn bars_that_hide_a_basket_are_translucent() {
+        let mut world = World::<Dim3>::new(WorldConfig::default()).unwrap();
+        let cube = |half: f32| Shape::cuboid(Vec3::splat(half));
+        let lid = Shape::cuboid(Vec3::new(0.5, 0.1, 0.5)).translated(Vec3::Y);
+        let floor = Shape::cuboid(Vec3::new(2.0, 0.1, 2.0)).translated(Vec3::NEG_Y);
+        for shape in [lid, floor] {
+            world.add_rigid_body(RigidBody::fixed(shape)).unwrap();
+        }
+        let palette = Palette::candy();
+        let mut camera = Camera::fit(Vec3::splat(-2.0), Vec3::splat(2.0), [1, 1]);
+        let basket = crate::frame::Basket {
+            region: cube(0.3),
+            fill: 0.0,
+            colour: None,
+        };
+        // From above the lid hides the basket, and from the front nothing does.
+        for (elevation, thin) in [(1.5, 1), (0.0, 0)] {
+            camera.elevation = elevation;
+            let frame = Frame {
+                baskets: vec![basket],
+                ..Frame::new(camera, &palette)
+            };
+            let mut geometry = Geometry::default();
+            geometry.gather(&world, &frame);
+            assert_eq!(
+                [geometry.bars.len(), geometry.thin_bars.len()],
+                [2 - thin, thin]
+            );
+        }
+        let eye = 5.0 * Vec3::Y;
+        assert_eq!(hidden_share(&lid, &cube(0.3), eye), 1.0);
+        let half = lid.translated(0.5 * Vec3::X);
+        assert_eq!(hidden_share(&half, &cube(0.3), eye), 2.0 / 3.0);
+        assert_eq!(opacity(0.0), 1.0);
+        assert!((opacity(1.0) - THIN).abs() < 1e-6);
+    }
 
     #[test]
     fn gather_places_room_bars_hands_crumbs_and_lines() {

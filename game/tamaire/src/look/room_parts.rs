@@ -1,8 +1,8 @@
-//! Switches and fields of a room.
+//! Switches, fields and knives of a room, and bubbles where nothing falls.
 
 use super::DrawOptions;
 use egui::{Color32, Painter, Pos2, Shape as Drawn, Stroke};
-use fuwafuwa::{Dim, DimVector, Shape, Vec3};
+use fuwafuwa::{Dim, DimVector, Knife, Shape, Vec3, World};
 use tamaire_play::Round;
 
 /// Distance between the streaks that show a field [m].
@@ -13,14 +13,57 @@ const LENGTH: [f32; 2] = [0.02, 0.14];
 const WEAK: f32 = 0.3;
 /// Time in which a streak moves along its length and fades [s].
 const PERIOD: f64 = 1.2;
+/// Number of bubbles in a room without gravity, radius of the largest [m], and how far each drifts [m].
+const BUBBLES: usize = 24;
+const BUBBLE: f32 = 0.028;
+const DRIFT: f32 = 0.08;
 
-/// Draws the switches and fields of a round.
+/// Colours of the blade of a knife, of its rim and of its handle.
+const STEEL: Color32 = Color32::from_rgb(214, 221, 228);
+const STEEL_RIM: Color32 = Color32::from_rgb(104, 116, 130);
+const HANDLE: Color32 = Color32::from_rgb(120, 84, 52);
+/// Minimum height of a drawn blade, and half the width of its back in 2D and of a handle [m].
+const BLADE: f32 = 0.05;
+const BACK: f32 = 0.018;
+
+/// Draws the switches, fields and knives of a round, or bubbles where nothing falls.
 pub(super) fn draw<D: Dim>(painter: &Painter, round: &Round<D>, look: &DrawOptions) {
     for (region, is_on) in round.machinery().switches() {
         switch(painter, region, is_on, look);
     }
+    for (_, knife) in round.world().knives() {
+        blade(painter, round.world(), &knife.definition(), look);
+    }
     if round.machinery().has_fields() {
         field(painter, round, look);
+    } else if round.is_weightless() {
+        bubbles(painter, round, look);
+    }
+}
+
+/// Draws bubbles that drift through a room without gravity.
+fn bubbles<D: Dim>(painter: &Painter, round: &Round<D>, look: &DrawOptions) {
+    let [low, high] = round.level().arena();
+    let time = if look.reduced_motion { 0.0 } else { look.time };
+    // Multiples of the golden ratios of each dimension spread evenly.
+    let share = |number: usize, axis: usize| {
+        let ratio = [0.819_172_5, 0.671_043_6, 0.549_700_5][axis];
+        (0.5 + ratio * number as f32).fract()
+    };
+    for number in 0..BUBBLES {
+        let mut at = Vec3::ZERO;
+        for axis in 0..D::N {
+            let turn = time * (0.3 + 0.1 * axis as f64) + 2.4 * number as f64;
+            let rest = low[axis] + (high[axis] - low[axis]) * share(number, axis);
+            at[axis] = rest + DRIFT * turn.sin() as f32;
+        }
+        let middle = look.view.to_screen(at);
+        let radius = BUBBLE * (0.4 + 0.6 * share(number, 2)) * look.view.scale_at(at);
+        let rim = look.theme.faint.gamma_multiply(0.45);
+        let fill = Color32::WHITE.gamma_multiply(0.25);
+        painter.circle(middle, radius, fill, Stroke::new(0.18 * radius, rim));
+        let glint = middle - 0.35 * radius * egui::Vec2::splat(1.0);
+        painter.circle_filled(glint, 0.25 * radius, Color32::WHITE.gamma_multiply(0.8));
     }
 }
 
@@ -48,6 +91,32 @@ fn switch<D: Dim>(painter: &Painter, region: &Shape<D>, is_on: bool, look: &Draw
             painter.add(Drawn::convex_polygon(corners.to_vec(), fill, rim));
         }
     }
+}
+
+/// Draws a knife: its blade, and a handle from the blade to the rigid body that holds it.
+fn blade<D: Dim>(painter: &Painter, world: &World<D>, knife: &Knife<D>, look: &DrawOptions) {
+    let Ok(holder) = world.rigid_body(knife.holder) else {
+        return;
+    };
+    let (place, turn) = (holder.position(), holder.rotation());
+    let [from, to] = { knife.edge }.map(|end| (place + turn.apply(end)).to_vec3());
+    let toward = turn.apply(knife.toward).to_vec3().normalize_or_zero();
+    let height = knife.height.max(BLADE) * toward;
+    let scale = look.view.scale_at(from);
+    let corners = match D::N {
+        2 => {
+            let aside = BACK * Vec3::new(-toward.y, toward.x, 0.0);
+            let (tip, back) = (0.5 * (from + to), 0.5 * (from + to) - height);
+            vec![tip, back + aside, back - aside]
+        }
+        _ => vec![from, to, to - height, from - height],
+    };
+    let back = 0.5 * (from + to) - height;
+    let handle = [back, place.to_vec3()].map(|at| look.view.to_screen(at));
+    painter.line_segment(handle, Stroke::new(2.0 * BACK * scale, HANDLE));
+    let corners = corners.into_iter().map(|at| look.view.to_screen(at));
+    let rim = Stroke::new(1.5, STEEL_RIM);
+    painter.add(Drawn::convex_polygon(corners.collect(), STEEL, rim));
 }
 
 /// Draws a field as streaks that move with it.

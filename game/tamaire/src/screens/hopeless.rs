@@ -6,13 +6,16 @@ use crate::game::{CurrentRound, Game, ScreenButton};
 use crate::input::{Action, InputMethod};
 use app_shell::widgets::{ButtonStyle, button};
 use egui::{FontId, Rect, Ui, UiBuilder, pos2, vec2};
-use fuwafuwa::{Dim, DimVector, Vec3};
+use fuwafuwa::inspect::is_hand;
+use fuwafuwa::{Dim, DimVector, JointAnchor, Vec3};
 use tamaire_play::{AnyRound, Round, Wish, WishState};
 
 /// Interval between two looks at the pieces [ticks]. A look reads all elements.
 const LOOK: u64 = 30;
 /// Distance from the arena from which a piece is out of reach [m].
 const OUT: f32 = 0.3;
+/// Speed below which a piece rests [m/s].
+const SLOW: f32 = 0.03;
 /// Height of the message with one line of text [points at scale 1].
 const HIGH: f32 = 56.0;
 /// Distance of the message from the lower edge of the window [points at scale 1].
@@ -35,7 +38,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     let font = FontId::proportional(scale * 19.0);
     let text = match lost_condition(bout.round()) {
         Some(wish) => (said.missed)(wish),
-        None => said.hopeless.to_string(),
+        None if is_any_held(bout.round()) => said.hopeless.to_string(),
+        None => said.empty_hand.to_string(),
     };
     let text = match rewind_hint(game) {
         Some(hint) => format!("{text} {hint}"),
@@ -96,13 +100,39 @@ fn is_hopeless_lately(bout: &mut CurrentRound) -> bool {
     is_hopeless
 }
 
-/// Whether the mass that can still be in the basket is less than a win requires.
+/// Whether the mass that can still be in the basket is less than a win requires, a condition can no longer be met, or
+/// no hand can move anything any more.
 fn is_hopeless(round: &AnyRound) -> bool {
-    let left = match round {
-        AnyRound::Plane(round) => share_left(round),
-        AnyRound::Space(round) => share_left(round),
+    let (left, rests) = match round {
+        AnyRound::Plane(round) => (share_left(round), rests(round)),
+        AnyRound::Space(round) => (share_left(round), rests(round)),
     };
-    round.has_basket() && left < round.level().game().share || lost_condition(round).is_some()
+    let too_little = round.has_basket() && left < round.level().game().share;
+    too_little || lost_condition(round).is_some() || rests && !is_any_held(round)
+}
+
+/// Whether a hand touches bodies or holds a joint.
+fn is_any_held(round: &AnyRound) -> bool {
+    match round {
+        AnyRound::Plane(round) => is_held(round),
+        AnyRound::Space(round) => is_held(round),
+    }
+}
+
+fn is_held<D: Dim>(round: &Round<D>) -> bool {
+    let world = round.world();
+    let is_hand = |anchor: &JointAnchor<D>| match anchor {
+        JointAnchor::RigidBody { body, .. } => { world.rigid_body(*body) }.is_ok_and(is_hand),
+        JointAnchor::Point(_) | JointAnchor::SoftBody { .. } => false,
+    };
+    round.hands().any(|hand| hand.layers().filters != 0) || { world.joints() }
+        .any(|(_, joint)| joint.definition().anchors.iter().any(is_hand))
+}
+
+/// Whether all pieces rest.
+fn rests<D: Dim>(round: &Round<D>) -> bool {
+    let mut pieces = { round.counted_bodies() }.flat_map(|body| body.piece_views());
+    pieces.all(|piece| piece.velocity.length() < SLOW)
 }
 
 /// Returns the condition of the level that can no longer be met.
@@ -184,6 +214,16 @@ mod tests {
         // A body above the arena falls back.
         let above = BOTTOMLESS.replace("at = [-0.3, -0.3, 0.0]", "at = [-0.3, 2.0, 0.0]");
         assert!(!is_hopeless(&after(level(&above), 0)));
+    }
+
+    #[test]
+    fn hand_whose_rope_tore_is_hopeless_once_all_rests() {
+        let text =
+            std::fs::read_to_string("../tamaire_play/levels/walk-the-dog/level.toml").unwrap();
+        assert!(!is_hopeless(&after(level(&text), 60)));
+        let untied = &text[..text.rfind("[[joint]]").unwrap()];
+        let round = after(level(untied), 60);
+        assert!(is_hopeless(&round) && !is_any_held(&round));
     }
 
     #[test]

@@ -210,9 +210,20 @@ fn draw_name(ui: &Ui, free: Rect, scale: f32, game: &Game) -> f32 {
     let name = game.settings.language.of(&round.level().game().name);
     let ink = game.theme().ink.gamma_multiply(strength);
     let width = free.width() - scale * 48.0;
-    let galley = fitted(ui.painter(), name, 30.0 * scale, width, ink);
     let fill = pale(&game.theme()).gamma_multiply(strength);
-    draw_label(ui, free, scale, galley, fill)
+    let galley = fitted(ui.painter(), name, 30.0 * scale, width, ink);
+    let below = draw_label(ui, free, scale, galley, fill);
+    if !round.is_weightless() {
+        return below;
+    }
+    let galley = fitted(
+        ui.painter(),
+        game.words().nothing_falls,
+        19.0 * scale,
+        width,
+        ink,
+    );
+    draw_label(ui, free.with_min_y(below), scale, galley, fill)
 }
 
 /// Draws the explanation of the element view at the top of the `free` part of the screen.

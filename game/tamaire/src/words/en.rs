@@ -26,10 +26,10 @@ pub(super) const WORDS: Words = Words {
     next: "Next",
     other_way: |route| match route {
         Route::Squeeze => "Now try shaving it to fit!",
-        Route::Shave | Route::Mix => "Now try squeezing it in whole!",
+        Route::Shave | Route::Mix => "Now try to get it in whole!",
     },
     route: |route| match route {
-        Route::Squeeze => "Squeezed in!",
+        Route::Squeeze => "It went in whole!",
         Route::Shave => "Shaved to fit!",
         Route::Mix => "Shaved and squeezed!",
     },
@@ -84,6 +84,8 @@ pub(super) const WORDS: Words = Words {
     seconds: time,
     fill_basket: "fill the basket",
     hopeless: "Not enough of the body is left to win.",
+    empty_hand: "The hand holds nothing any more.",
+    nothing_falls: "Nothing falls here.",
     missed: |wish| {
         format!(
             "This round cannot be won any more: {}.",

@@ -100,6 +100,8 @@ pub(super) const WORDS: Words = Words {
     rewound: "まきもどしあり",
     hold_to_rewind: |key| format!("{key}を押しつづけると 時間がもどるよ。"),
     hopeless: "のこりが たりなくて、もうクリアできないよ。",
+    empty_hand: "手に もう なにも ついていないよ。",
+    nothing_falls: "ここでは なにも おちないよ。",
     watch: "見る",
     race: "きょうそう",
     show_way: "やりかたを 見る",

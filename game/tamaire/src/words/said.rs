@@ -31,6 +31,10 @@ pub struct Words {
     pub summary: fn(&Outcome) -> [(&'static str, String); 4],
     pub new_best: &'static str,
     pub hopeless: &'static str,
+    /// Message that no hand can touch or pull anything any more.
+    pub empty_hand: &'static str,
+    /// Line below the name of a level without gravity.
+    pub nothing_falls: &'static str,
     /// Message that a condition of the level can no longer be met.
     pub missed: fn(&Wish) -> String,
     /// Message that a body is in a basket that refuses it.

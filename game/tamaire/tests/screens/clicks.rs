@@ -64,7 +64,7 @@ fn round_is_won_saved_watched_raced_and_deleted() {
     win(&mut window);
     let (outcome, is_best) = game(&mut window).bout.won.unwrap();
     assert!(is_best && outcome.route == Route::Squeeze, "{outcome:?}");
-    window.get_by_label("Squeezed in!");
+    window.get_by_label("It went in whole!");
     click(&mut window, "Save replay");
     game(&mut window).finish_writing();
     assert!(notices(&window).contains("classic-1.tamaire"));

@@ -173,7 +173,7 @@ fn saved_round_shows_route() {
     game(&mut window).notices.clear();
     game(&mut window).go(Screen::Replays);
     frames(&mut window, 20);
-    window.get_by_label_contains("Squeezed in!");
+    window.get_by_label_contains("It went in whole!");
 }
 
 #[test]

@@ -32,9 +32,9 @@ fn saved_round_shows_level_date_and_result() {
     assert_eq!(classic.outcome.unwrap().route, Route::Squeeze);
     let level = &window.state().game.levels[0];
     assert!(std::sync::Arc::ptr_eq(&classic.level, level));
-    // The label is, for example, "Classic 1, 2026-11-22 23:10, Squeezed in! 9.7 s".
+    // The label is, for example, "Classic 1, 2026-11-22 23:10, It went in whole! 9.7 s".
     window.get_by_label_contains("Classic 1, 20");
-    window.get_by_label_contains(&format!("Squeezed in! {:.1} s", classic.seconds));
+    window.get_by_label_contains(&format!("It went in whole! {:.1} s", classic.seconds));
 }
 
 #[test]

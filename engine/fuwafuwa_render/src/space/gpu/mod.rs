@@ -269,6 +269,7 @@ impl Renderer {
                 &mut pass,
                 [
                     (&pipelines.bar_shadow, &self.fine, &geometry.bars),
+                    (&pipelines.bar_shadow, &self.fine, &geometry.thin_bars),
                     (&pipelines.bar_shadow, &self.fine, &geometry.props),
                     (&pipelines.crumb_shadow, &self.coarse, &geometry.crumbs),
                 ],
@@ -314,6 +315,8 @@ impl Renderer {
                 (&pipelines.glow, &self.fine, &geometry.basket),
                 (&pipelines.line, &self.coarse, &geometry.lines),
                 (&pipelines.dust, &self.coarse, &geometry.dust),
+                (&pipelines.thin_bar, &self.fine, &geometry.thin_bars),
+                (&pipelines.glass, &self.fine, &geometry.glass),
             ],
         );
         // Only the front surface of a ghost is visible, so its depth is drawn first.
@@ -323,7 +326,7 @@ impl Renderer {
                 draw_mesh(&self.meter, &mut pass, buffers, 0..1);
             }
         }
-        let hands = (&pipelines.ghost_hand, &self.fine, &geometry.clear);
+        let hands = (&pipelines.ghost_hand, &self.fine, &geometry.ghost_hands);
         self.draw_rounded(&mut pass, [hands]);
     }
 
