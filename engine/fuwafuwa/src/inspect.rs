@@ -55,3 +55,8 @@ pub fn obstacles<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<
     let bodies = world.rigid_bodies().map(|(_, body)| body);
     bodies.filter(|&body| !is_hand(body) && !body.is_sensor())
 }
+
+/// Returns the obstacles of a world that move: those that are dynamic, or follow a target.
+pub fn moving_obstacles<D: Dim>(world: &World<D>) -> impl Iterator<Item = RigidBodyRef<'_, D>> {
+    obstacles(world).filter(|body| body.is_dynamic() || body.follows_target())
+}

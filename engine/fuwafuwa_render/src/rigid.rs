@@ -106,11 +106,10 @@ pub fn is_glass<D: Dim>(body: RigidBodyRef<'_, D>) -> bool {
     !body.layers().meet(Layers::default())
 }
 
-/// Returns whether a rigid body is drawn as a curtain: hands that touch anything pass through it.
+/// Returns whether a rigid body is drawn as a curtain: hands pass through it.
 pub fn is_curtain<D: Dim>(world: &World<D>, body: RigidBodyRef<'_, D>) -> bool {
-    let mut layers = hands(world).map(|(_, hand)| hand.layers());
-    let first = layers.find(|layers| layers.filters != 0);
-    first.is_some_and(|hand| !hand.meet(body.layers()))
+    let hand = hands(world).next();
+    hand.is_some_and(|(_, hand)| body.layers().filters & hand.layers().memberships == 0)
 }
 
 /// Returns the rectangle instance of a bounded shape, or `None` for a half-space.

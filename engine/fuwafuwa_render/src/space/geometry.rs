@@ -9,7 +9,7 @@ use super::stickers::Stickers;
 use crate::frame::{Frame, Look};
 use crate::palette::Palette;
 use crate::rigid::{MAX_WALLS, is_curtain, is_glass};
-use fuwafuwa::inspect::{hands, obstacles};
+use fuwafuwa::inspect::{hands, moving_obstacles, obstacles};
 use fuwafuwa::{Dim3, ElementId, MotionType, Shape, SoftBody, VoxelGrid, World};
 use glam::{Mat3, Vec3};
 use std::ops::Range;
@@ -44,7 +44,7 @@ pub struct Geometry {
     pub(crate) room: Vec<RoomVertex>,
     /// Outward normal and offset [m] of each half-space.
     pub(crate) walls: Vec<[f32; 4]>,
-    /// Instances of bars, hands, props, glass, ghost hands, crumbs, dust, lines below hands, and the basket, in this
+    /// Instances of bars, hands, props, glass, parts of the ghost, crumbs, dust, lines below hands, and the basket, in this
     /// order. Bars that hide a basket come last among the bars.
     pub(crate) rounded: Vec<RoundedInstance>,
     pub(crate) bars: Range<u32>,
@@ -53,7 +53,8 @@ pub struct Geometry {
     pub(crate) hands: Range<u32>,
     pub(crate) props: Range<u32>,
     pub(crate) glass: Range<u32>,
-    pub(crate) ghost_hands: Range<u32>,
+    /// Hands and moving obstacles of the ghost world.
+    pub(crate) ghost_parts: Range<u32>,
     pub(crate) crumbs: Range<u32>,
     pub(crate) dust: Range<u32>,
     pub(crate) lines: Range<u32>,
@@ -101,8 +102,13 @@ impl Geometry {
         let glass = glass.into_iter();
         let glass = glass.filter_map(|bar| RoundedInstance::of(bar.shape(), palette.glass, 0.0));
         self.glass = append(&mut self.rounded, glass);
-        let of_ghost = { frame.ghost.into_iter() }.flat_map(|ghost| balls(ghost, palette));
-        self.ghost_hands = append(&mut self.rounded, of_ghost);
+        let of_ghost = { frame.ghost.into_iter() }.flat_map(|ghost| {
+            let parts = moving_obstacles(ghost);
+            let parts =
+                parts.filter_map(|part| RoundedInstance::of(part.shape(), palette.bar, 0.0));
+            balls(ghost, palette).chain(parts)
+        });
+        self.ghost_parts = append(&mut self.rounded, of_ghost);
         self.skins
             .resize_with(world.soft_bodies().count(), Skin::default);
         self.renewed.clear();

@@ -7,8 +7,8 @@ use app_shell::pass::{PaintCallback, lock, pixels};
 use app_shell::{SpaceStage, Theme, View};
 use eframe::egui_wgpu::{Callback, RenderState};
 use egui::{Color32, Painter, Shape, Stroke, Ui};
-use fuwafuwa::inspect::{hands, obstacles};
-use fuwafuwa::{Dim, Dim2, Dim3, DimVector, MotionType, RigidBodyRef, Vec3};
+use fuwafuwa::inspect::{hands, moving_obstacles};
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Vec3, World};
 use fuwafuwa_render::{Ages, Cost, Frame, Outlines, Particle, Renderer, Sticker, space};
 use std::sync::{Arc, Mutex};
 use tamaire_play::{AnyRound, Level, Round};
@@ -109,6 +109,9 @@ impl Stage {
         let painter = ui.painter();
         room_parts::draw(painter, round, look);
         ropes::draw(painter, round.world(), look);
+        if let Some(AnyRound::Space(ghost)) = look.ghost {
+            paint_joints(painter, &look.view, ghost.world());
+        }
         hint::draw_ring_of_space(painter, round, look);
         look.effects.confetti.draw(painter, &look.view.flat());
     }
@@ -162,17 +165,10 @@ impl Stage {
             }
         }
         let world = round.world();
-        let moves = |body: &RigidBodyRef<'_, Dim2>| {
-            matches!(body.motion_type(), MotionType::Dynamic { .. }) || body.follows_target()
-        };
-        for body in obstacles(world).filter(moves) {
+        for body in moving_obstacles(world) {
             paint_shape(painter, view, &body.shape(), Color32::TRANSPARENT, stroke);
         }
-        for (handle, _) in world.joints() {
-            if let Ok(Some(anchors)) = world.joint_anchor_positions(handle) {
-                painter.line_segment(anchors.map(|at| view.to_screen(at.extend(0.0))), stroke);
-            }
-        }
+        paint_joints(painter, view, world);
         for (player, hand) in hands(world) {
             let tone = look.theme.hand(player).gamma_multiply(0.35);
             paint_shape(painter, view, &hand.shape(), tone, stroke);
@@ -194,6 +190,16 @@ impl Stage {
         let seconds = (look.time - self.time).max(0.0) as f32;
         self.ages.update(round.world(), seconds);
         self.time = look.time;
+    }
+}
+
+/// Draws the joints of an earlier round as lines.
+fn paint_joints<D: Dim>(painter: &Painter, view: &View, world: &World<D>) {
+    for (handle, _) in world.joints() {
+        if let Ok(Some(anchors)) = world.joint_anchor_positions(handle) {
+            let ends = anchors.map(|at| view.to_screen(at.to_vec3()));
+            painter.line_segment(ends, Stroke::new(GHOST_LINE, GHOST));
+        }
     }
 }
 

@@ -217,13 +217,18 @@ mod tests {
     }
 
     #[test]
-    fn hand_whose_rope_tore_is_hopeless_once_all_rests() {
-        let text =
-            std::fs::read_to_string("../tamaire_play/levels/walk-the-dog/level.toml").unwrap();
-        assert!(!is_hopeless(&after(level(&text), 60)));
-        let untied = &text[..text.rfind("[[joint]]").unwrap()];
-        let round = after(level(untied), 60);
-        assert!(is_hopeless(&round) && !is_any_held(&round));
+    fn hand_that_touches_and_holds_nothing_is_hopeless_once_all_rests() {
+        let text = std::fs::read_to_string("../tamaire_play/levels/classic.toml").unwrap();
+        let empty = text.replace("[[hand]]", "[[hand]]\nlayers = { filters = 0 }");
+        let rope = "\n[[joint]]\nkind = \"rope\"\nlength = 3.0\n\
+                    anchors = [{ hand = 1, point = [0.0, 0.0, 0.0] }, { point = [0.0, 0.5, 0.0] }]\n";
+        for (text, expected) in [(text, false), (empty.clone(), true), (empty + rope, false)] {
+            let round = after(level(&text), 60);
+            assert_eq!(
+                (is_hopeless(&round), !is_any_held(&round)),
+                (expected, expected)
+            );
+        }
     }
 
     #[test]

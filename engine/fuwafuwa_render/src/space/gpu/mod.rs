@@ -326,8 +326,8 @@ impl Renderer {
                 draw_mesh(&self.meter, &mut pass, buffers, 0..1);
             }
         }
-        let hands = (&pipelines.ghost_hand, &self.fine, &geometry.ghost_hands);
-        self.draw_rounded(&mut pass, [hands]);
+        let parts = (&pipelines.ghost_part, &self.fine, &geometry.ghost_parts);
+        self.draw_rounded(&mut pass, [parts]);
     }
 
     fn draw_rounded<const K: usize>(
