@@ -146,7 +146,7 @@ fn glass(in: RoundedCorner) -> @location(0) vec4f {
     let away = 1.0 - abs(dot(normalize(in.normal), towards_eye(in.at)));
     let edge = 1.0 - smoothstep(0.008, 0.02, to_edge(in.reach - abs(in.own)));
     let colour = mix(to_linear(in.colour.rgb), vec3f(1.0), 0.3 * edge);
-    return shown(colour, max(0.2 + 0.4 * smoothstep(0.55, 0.95, away), 0.75 * edge));
+    return shown(colour, max(0.14 + 0.4 * smoothstep(0.55, 0.95, away), 0.75 * edge));
 }
 
 @fragment

@@ -68,6 +68,10 @@ impl SceneError {
         for (type_name, words) in IN_WORDS {
             message = message.replace(type_name, words);
         }
+        if let Some((before, after)) = message.split_once("struct ") {
+            let after = after.trim_start_matches(|letter: char| letter.is_ascii_alphanumeric());
+            message = format!("{before}a table{after}");
+        }
         // If a field is missing from the top level of the text, the span of the error is empty and names no
         // line.
         let span = error.span().filter(|span| span.end > 0);

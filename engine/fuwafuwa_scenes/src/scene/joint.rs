@@ -112,7 +112,7 @@ impl JointText {
         let added = world.add_joint(joint);
         added
             .map(drop)
-            .map_err(|refused| FieldError::new("kind", refused))
+            .map_err(|refused| FieldError::engine("kind", refused))
     }
 
     fn kind(&self) -> Result<JointKind, FieldError> {

@@ -362,6 +362,16 @@ fn error_names_line_and_field() {
             "knife 1, radius: expected 0 to 1 m, found 2",
         ),
         (
+            "breaking_force = 900.0",
+            "breaking_force = -1.0",
+            "joint 2, breaking_force: expected",
+        ),
+        (
+            "layers = { memberships = 4 }",
+            "layers = 4",
+            "layers = 4: invalid type: integer `4`, expected a table",
+        ),
+        (
             "gravity_scale = 0.5",
             "gravity_scale = 500.0",
             "body 1, gravity_scale: expected -100 to 100, found",

@@ -105,7 +105,7 @@ fn blade<D: Dim>(painter: &Painter, world: &World<D>, knife: &Knife<D>, look: &D
     let scale = look.view.scale_at(from);
     let corners = match D::N {
         2 => {
-            let aside = BACK * Vec3::new(-toward.y, toward.x, 0.0);
+            let aside = BACK.max(0.12 * knife.height) * Vec3::new(-toward.y, toward.x, 0.0);
             let (tip, back) = (0.5 * (from + to), 0.5 * (from + to) - height);
             vec![tip, back + aside, back - aside]
         }

@@ -22,6 +22,21 @@ struct Goal {
     /// Text in the pause menu.
     long: String,
     state: WishState,
+    /// Whether the goal is a star, and not needed for the win.
+    is_star: bool,
+}
+
+impl Goal {
+    /// Returns the sign before the text.
+    fn sign(&self) -> &'static str {
+        match (self.is_star, self.state) {
+            (true, WishState::Open) => "☆ ",
+            (true, WishState::Done) => "★ ",
+            (false, WishState::Open) => "",
+            (false, WishState::Done) => "✓ ",
+            (_, WishState::Missed) => "× ",
+        }
+    }
 }
 
 #[derive(Copy, Clone)]
@@ -76,17 +91,22 @@ fn goals(round: &AnyRound, said: &Words) -> Vec<Goal> {
             Some(_) => WishState::Done,
             None => WishState::Open,
         },
+        is_star: false,
     });
-    let wishes = rules.require.iter().chain(&rules.wish).map(|wish| Goal {
+    let required = rules.require.iter().map(|wish| (wish, false));
+    let wishes = required.chain(rules.wish.iter().map(|wish| (wish, true)));
+    let wishes = wishes.map(|(wish, is_star)| Goal {
         icon: GoalIcon::of(wish),
         short: (said.goal)(wish),
         long: (said.wish)(wish),
         state: progress.state_of(wish, round.seconds()),
+        is_star,
     });
     basket.into_iter().chain(wishes).collect()
 }
 
-/// Draws a chip for each goal. A goal that was reached gets a check mark, a missed one is crossed out.
+/// Draws a chip for each goal. What a win needs gets a check mark when it is reached, the star of a goal is then filled, and
+/// a missed goal is crossed out.
 pub(super) fn strip(row: &mut ChipRow, theme: &Theme, game: &Game) {
     for goal in goals(game.bout.round(), game.words()) {
         let scale = row.scale;
@@ -95,8 +115,12 @@ pub(super) fn strip(row: &mut ChipRow, theme: &Theme, game: &Game) {
             _ => theme.ink,
         };
         let font = FontId::proportional(TEXT * scale);
-        let galley = row.painter.layout_no_wrap(goal.short, font, ink);
-        let is_done = goal.state == WishState::Done;
+        let is_done = goal.state == WishState::Done && !goal.is_star;
+        let text = match goal.is_star && goal.state != WishState::Missed {
+            true => format!("{}{}", goal.sign(), goal.short),
+            false => goal.short,
+        };
+        let galley = row.painter.layout_no_wrap(text, font, ink);
         let mark = if is_done { 24.0 } else { 0.0 };
         let rect = row.take(galley.size().x / scale + ICON + 16.0 + mark);
         let painter = row.painter;
@@ -107,8 +131,7 @@ pub(super) fn strip(row: &mut ChipRow, theme: &Theme, game: &Game) {
         let at = pos2(left, rect.center().y - 0.5 * galley.size().y);
         painter.galley(at, galley, ink);
         match goal.state {
-            WishState::Open => {}
-            WishState::Done => {
+            WishState::Done if is_done => {
                 let at = pos2(end + 16.0 * scale, rect.center().y);
                 icons::tick(
                     painter,
@@ -121,6 +144,7 @@ pub(super) fn strip(row: &mut ChipRow, theme: &Theme, game: &Game) {
                 let line = [pos2(left, rect.center().y), pos2(end, rect.center().y)];
                 painter.line_segment(line, Stroke::new(2.0 * scale, ink));
             }
+            WishState::Open | WishState::Done => {}
         }
     }
 }
@@ -131,12 +155,11 @@ pub(super) fn lines(ui: &mut Ui, theme: &Theme, game: &Game) {
     let goals = goals(game.bout.round(), game.words());
     let most = ui.available_width() - ICON;
     let lines = goals.into_iter().map(|goal| {
-        let (sign, ink) = match goal.state {
-            WishState::Open => ("", theme.ink),
-            WishState::Done => ("✓ ", theme.ink),
-            WishState::Missed => ("× ", theme.faint),
+        let ink = match goal.state {
+            WishState::Missed => theme.faint,
+            _ => theme.ink,
         };
-        let text = format!("{sign}{}", goal.long);
+        let text = format!("{}{}", goal.sign(), goal.long);
         let galley = fitted(ui.painter(), &text, TEXT, most, ink);
         (goal.icon, galley, ink)
     });

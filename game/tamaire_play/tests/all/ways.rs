@@ -107,7 +107,7 @@ fn straight_push_wins_no_2d_level() {
 const RAMMED: (&str, f32) = ("under-the-table", 3.0);
 
 #[test]
-#[ignore = "takes half an hour: cargo test --release -p tamaire_play --test all ways -- --ignored --nocapture"]
+#[ignore = "takes hours: cargo test --release -p tamaire_play --test all ways -- --ignored --nocapture"]
 fn straight_push_wins_no_level_at_three_speeds_from_twenty_starts() {
     for_each_level(|known, level| {
         for chases in [false, true] {
