@@ -111,10 +111,14 @@ fn bar(in: ShapeCorner) -> @location(0) vec4f {
 fn hand(in: ShapeCorner) -> @location(0) vec4f {
     let inside = -distance_to(in.at, in);
     let alpha = smoothstep(-0.5, 0.5, inside / pixel());
-    let place = (in.at - in.from_to.xy) / in.form.x;
+    // A box is a cushion.
+    let is_box = in.form.y == 1.0;
+    let radius = select(in.form.x, min(in.from_to.z, in.from_to.w), is_box);
+    let of_box = within(in.at, in.from_to, in.form.x) / in.from_to.zw;
+    let place = select((in.at - in.from_to.xy) / radius, of_box, is_box);
     let steep = min(length(place), 0.985);
     let normal = vec3f(place * steep / max(length(place), 1e-6), sqrt(1.0 - steep * steep));
-    let soft = 1.5 * pixel() / in.form.x;
+    let soft = 1.5 * pixel() / radius;
     // Patterns on the ball: a ring for the first player, stripes for the second, then dots.
     let player = i32(in.form.z) % 3;
     var pattern = 0.0;

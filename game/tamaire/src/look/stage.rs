@@ -137,11 +137,12 @@ impl Stage {
         let add = |callback| painter.add(Callback::new_paint_callback(view.rect, callback));
         let callback = |paint| PaintCallback::new(&self.renderer, paint);
         add(callback(Renderer::paint_bodies).with_commands(encoder.finish()));
+        room_parts::draw(painter, round, look);
+        ropes::draw(painter, round.world(), look);
+        // Over the knots of ropes.
         for face in faces(round, look) {
             face.paint(painter, view);
         }
-        room_parts::draw(painter, round, look);
-        ropes::draw(painter, round.world(), look);
         add(callback(Renderer::paint_rigid));
         glow::draw(painter, round, look);
         if let Some(AnyRound::Plane(ghost)) = look.ghost {

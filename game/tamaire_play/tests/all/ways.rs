@@ -103,9 +103,6 @@ fn straight_push_wins_no_2d_level() {
     });
 }
 
-/// Level and speed [m/s] at which a straight bot may win up to 5 of 20 rounds: it rams the ball under the table.
-const RAMMED: (&str, f32) = ("under-the-table", 3.0);
-
 #[test]
 #[ignore = "takes hours: cargo test --release -p tamaire_play --test all ways -- --ignored --nocapture"]
 fn straight_push_wins_no_level_at_three_speeds_from_twenty_starts() {
@@ -118,8 +115,7 @@ fn straight_push_wins_no_level_at_three_speeds_from_twenty_starts() {
                     "{}, chases: {chases}, {speed} m/s: won with {won:?}",
                     known.id
                 );
-                let most = if (known.id, speed) == RAMMED { 5 } else { 0 };
-                assert!(won.len() <= most, "{}", known.id);
+                assert!(won.is_empty(), "{}", known.id);
             }
         }
     });
