@@ -569,14 +569,14 @@ fn goals_are_listed_in_pause_and_ticked_off() {
     start(&mut window, "biscuit");
     press(&mut window, Key::P);
     window.get_by_label_contains("in the basket: 0 of");
-    window.get_by_label("shave it to fit");
-    window.get_by_label("at least 40 pieces");
+    window.get_by_label("☆ shave it to fit");
+    window.get_by_label("☆ at least 40 pieces");
     press(&mut window, Key::P);
     drive(game(&mut window), BotKind::Shave, |game| {
         game.bout.round().progress().pieces < 40
     });
     press(&mut window, Key::P);
-    window.get_by_label("✓ at least 40 pieces");
+    window.get_by_label("★ at least 40 pieces");
     start(&mut window, "core");
     drive(game(&mut window), BotKind::Shave, |game| {
         game.bout.round().progress().kept > 0.98
