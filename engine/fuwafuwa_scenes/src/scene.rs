@@ -119,7 +119,7 @@ use error::{FieldError, Origin, expected_number, require, vector_of};
 use fuwafuwa::{
     DEFAULT_TICK, Dim, MIN_TICK, Material, Shape, StiffBodies, VoxelGrid, World, WorldConfig,
 };
-use joint::JointTargets;
+use joint::SceneHandles;
 use materials::SceneMaterials;
 use serde::{Deserialize, Serialize};
 
@@ -378,7 +378,7 @@ impl Scene {
         // The world was empty before the build, so its rigid bodies are in the order of the lists: obstacles,
         // hands, rigid bodies.
         let mut rigids = world.rigid_bodies().map(|(id, _)| id);
-        let known = JointTargets {
+        let known = SceneHandles {
             bodies: world.soft_bodies().map(|(id, _)| id).collect(),
             obstacles: rigids.by_ref().take(self.obstacle.len()).collect(),
             hands: rigids.by_ref().take(self.hand.len()).collect(),

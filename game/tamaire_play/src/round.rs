@@ -364,9 +364,10 @@ impl<D: Dim> Round<D> {
         &self.world
     }
 
-    /// Returns whether nothing falls: the level has neither gravity nor fields.
+    /// Returns whether nothing falls: the level has no gravity, and no field pulls to a centre.
     pub fn is_weightless(&self) -> bool {
-        !self.machinery.has_fields() && self.world.config().gravity == D::Vector::ZERO
+        let mut fields = self.level.scene().field.iter();
+        fields.all(|field| field.centre.is_none()) && self.world.config().gravity == D::Vector::ZERO
     }
 
     /// Returns the hands of the players that have joined, in the order of the players.
@@ -711,6 +712,7 @@ mod tests {
             |knife: KnifeRef<'_, Dim2>| round.world().rigid_body(knife.definition().holder);
         let holders: Vec<_> = knives.map(|(_, knife)| holder(knife).unwrap()).collect();
         assert_eq!(holders.len(), 2);
+        assert_ne!(holders[0].position(), holders[1].position());
         assert!(holders.iter().all(|holder| is_hand(*holder)) && round.hands().len() == 2);
     }
 }

@@ -111,7 +111,7 @@ fn bar(in: ShapeCorner) -> @location(0) vec4f {
 fn hand(in: ShapeCorner) -> @location(0) vec4f {
     let inside = -distance_to(in.at, in);
     let alpha = smoothstep(-0.5, 0.5, inside / pixel());
-    // A box is a cushion.
+    // A box is shaded like a cushion that is highest in its middle.
     let is_box = in.form.y == 1.0;
     let radius = select(in.form.x, min(in.from_to.z, in.from_to.w), is_box);
     let of_box = within(in.at, in.from_to, in.form.x) / in.from_to.zw;

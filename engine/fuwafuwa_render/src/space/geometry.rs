@@ -22,9 +22,10 @@ const CRUMB: f32 = 0.62;
 /// camera distance.
 const LINE: f32 = 0.004;
 const LINE_SHARE: f32 = 0.002;
-/// Shares of a basket, 0 to 1: a bar that hides more than the first one begins to be translucent, and from the second
-/// one on it has the opacity `THIN`.
+/// Shares of a basket, 0 to 1. A bar that hides less than the first share is opaque; one that hides at least the second
+/// share has the opacity `THIN`.
 const HIDDEN: [f32; 2] = [0.25, 0.5];
+/// Opacity of a bar that hides a basket, 0 to 1.
 const THIN: f32 = 0.42;
 /// Distance at which a line of sight has met a bar, as a multiple of its length, and the maximum number of its steps.
 const NEAR: f32 = 1e-3;
@@ -214,15 +215,18 @@ fn hidden_share(bar: &Shape<Dim3>, basket: &Shape<Dim3>, eye: Vec3) -> f32 {
         );
         let at = low + (high - low) * (step + 0.5) / 3.0;
         let (reach, mut along) = (eye.distance(at), 0.0);
-        // The sight goes on by the distance to the bar until it meets it or passes it.
+        // Each step along the line of sight is as long as the distance to the bar, so that none passes through it.
         for _ in 0..SIGHT_STEPS {
-            let away = bar.distance(eye.lerp(at, along / reach)).0;
-            along += away;
-            if away < NEAR * reach || reach <= along {
-                break;
+            if reach <= along {
+                return false;
             }
+            let away = bar.distance(eye.lerp(at, along / reach)).0;
+            if away < NEAR * reach {
+                return true;
+            }
+            along += away;
         }
-        along < reach
+        false
     };
     let samples = 27;
     (0..samples).filter(hides).count() as f32 / samples as f32

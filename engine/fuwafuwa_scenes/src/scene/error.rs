@@ -68,9 +68,9 @@ impl SceneError {
         for (type_name, words) in IN_WORDS {
             message = message.replace(type_name, words);
         }
-        if let Some((before, after)) = message.split_once("struct ") {
+        if let Some((before, after)) = message.split_once("expected struct ") {
             let after = after.trim_start_matches(|letter: char| letter.is_ascii_alphanumeric());
-            message = format!("{before}a table{after}");
+            message = format!("{before}expected a table{after}");
         }
         // If a field is missing from the top level of the text, the span of the error is empty and names no
         // line.

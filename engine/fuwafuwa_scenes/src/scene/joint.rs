@@ -61,14 +61,14 @@ pub struct JointAnchorText {
 }
 
 /// Handles of possible targets of joints and holders of knives, in the order of their lists.
-pub(super) struct JointTargets {
+pub(super) struct SceneHandles {
     pub(super) bodies: Vec<SoftBodyHandle>,
     pub(super) obstacles: Vec<RigidBodyHandle>,
     pub(super) hands: Vec<RigidBodyHandle>,
     pub(super) rigid_bodies: Vec<RigidBodyHandle>,
 }
 
-impl JointTargets {
+impl SceneHandles {
     /// Returns the rigid body with the number of an obstacle, of a hand or of a rigid body, in this order. `None`
     /// without a number.
     pub(super) fn rigid(
@@ -91,7 +91,7 @@ impl JointText {
     pub(super) fn add_to<D: Dim>(
         &self,
         world: &mut World<D>,
-        known: &JointTargets,
+        known: &SceneHandles,
     ) -> Result<(), FieldError> {
         let [first, second] = &self.anchors[..] else {
             let found = self.anchors.len();
@@ -169,7 +169,7 @@ impl JointText {
 }
 
 impl JointAnchorText {
-    fn anchor<D: Dim>(&self, known: &JointTargets) -> Result<JointAnchor<D>, FieldError> {
+    fn anchor<D: Dim>(&self, known: &SceneHandles) -> Result<JointAnchor<D>, FieldError> {
         let point = vector_of::<D>("point", self.point)?;
         let good = self.body.is_some() || self.radius.is_none();
         require(good, "radius", "allowed only with a body")?;

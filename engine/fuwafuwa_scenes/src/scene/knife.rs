@@ -1,7 +1,7 @@
 //! Knives of a scene file.
 
 use super::error::{FieldError, require, vector_of};
-use super::joint::JointTargets;
+use super::joint::SceneHandles;
 use fuwafuwa::{Dim, DimVector, Knife, KnifeRef, World};
 use serde::{Deserialize, Serialize};
 
@@ -31,7 +31,7 @@ impl KnifeText {
     pub(super) fn add_to<D: Dim>(
         &self,
         world: &mut World<D>,
-        known: &JointTargets,
+        known: &SceneHandles,
     ) -> Result<(), FieldError> {
         let numbers = [self.obstacle, self.hand, self.rigid_body];
         let count = numbers.iter().flatten().count();

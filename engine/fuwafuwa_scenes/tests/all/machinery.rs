@@ -222,7 +222,7 @@ fn knife_on_a_hand_cuts_a_body_in_two() {
 }
 
 #[test]
-fn saw_of_knives_on_a_turning_obstacle_cuts_what_comes_near() {
+fn knife_on_a_turning_obstacle_cuts_what_it_meets() {
     let saw = "[[obstacle]]\nball = { centre = [0.3, 0.0, 0.0], radius = 0.1 }\nangular_velocity = [0.0, 0.0, 6.0]\n";
     let knife = "[[knife]]\nobstacle = 1\nedge = [[0.55, 0.0, 0.0], [0.55, 0.0, 0.0]]\ntoward = [0.0, 1.0, 0.0]\n";
     let (_, mut world, mut machinery) = built(&[BALL, saw, knife]);

@@ -36,7 +36,8 @@ pub(super) fn draw<D: Dim>(painter: &Painter, round: &Round<D>, look: &DrawOptio
     }
     if round.machinery().has_fields() {
         field(painter, round, look);
-    } else if round.is_weightless() {
+    }
+    if round.is_weightless() {
         bubbles(painter, round, look);
     }
 }
@@ -45,7 +46,7 @@ pub(super) fn draw<D: Dim>(painter: &Painter, round: &Round<D>, look: &DrawOptio
 fn bubbles<D: Dim>(painter: &Painter, round: &Round<D>, look: &DrawOptions) {
     let [low, high] = round.level().arena();
     let time = if look.reduced_motion { 0.0 } else { look.time };
-    // Multiples of the golden ratios of each dimension spread evenly.
+    // Multiples of these irrational numbers, modulo 1, spread evenly (additive recurrence in three dimensions).
     let share = |number: usize, axis: usize| {
         let ratio = [0.819_172_5, 0.671_043_6, 0.549_700_5][axis];
         (0.5 + ratio * number as f32).fract()

@@ -139,7 +139,7 @@ impl Stage {
         add(callback(Renderer::paint_bodies).with_commands(encoder.finish()));
         room_parts::draw(painter, round, look);
         ropes::draw(painter, round.world(), look);
-        // Over the knots of ropes.
+        // Faces are drawn over the knots of ropes.
         for face in faces(round, look) {
             face.paint(painter, view);
         }

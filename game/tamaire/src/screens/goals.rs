@@ -105,8 +105,8 @@ fn goals(round: &AnyRound, said: &Words) -> Vec<Goal> {
     basket.into_iter().chain(wishes).collect()
 }
 
-/// Draws a chip for each goal. What a win needs gets a check mark when it is reached, the star of a goal is then filled, and
-/// a missed goal is crossed out.
+/// Draws a chip for each goal. A condition of the win that is met gets a check mark, a star that is reached is filled,
+/// and a missed goal is crossed out.
 pub(super) fn strip(row: &mut ChipRow, theme: &Theme, game: &Game) {
     for goal in goals(game.bout.round(), game.words()) {
         let scale = row.scale;

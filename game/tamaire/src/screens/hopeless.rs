@@ -6,8 +6,8 @@ use crate::game::{CurrentRound, Game, ScreenButton};
 use crate::input::{Action, InputMethod};
 use app_shell::widgets::{ButtonStyle, button};
 use egui::{FontId, Rect, Ui, UiBuilder, pos2, vec2};
-use fuwafuwa::inspect::is_hand;
-use fuwafuwa::{Dim, DimVector, JointAnchor, Vec3};
+use fuwafuwa::inspect::{hands, is_hand, obstacles};
+use fuwafuwa::{Dim, DimVector, JointAnchor, Vec3, World};
 use tamaire_play::{AnyRound, Round, Wish, WishState};
 
 /// Interval between two looks at the pieces [ticks]. A look reads all elements.
@@ -38,7 +38,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) -> bool {
     let font = FontId::proportional(scale * 19.0);
     let text = match lost_condition(bout.round()) {
         Some(wish) => (said.missed)(wish),
-        None if is_any_held(bout.round()) => said.hopeless.to_string(),
+        None if can_any_hand_act(bout.round()) => said.hopeless.to_string(),
         None => said.empty_hand.to_string(),
     };
     let text = match rewind_hint(game) {
@@ -100,39 +100,47 @@ fn is_hopeless_lately(bout: &mut CurrentRound) -> bool {
     is_hopeless
 }
 
-/// Whether the mass that can still be in the basket is less than a win requires, a condition can no longer be met, or
-/// no hand can move anything any more.
+/// Returns whether the mass that can still be in the basket is less than a win requires, a condition can no longer be
+/// met, or all rests and no hand can move anything any more.
 fn is_hopeless(round: &AnyRound) -> bool {
-    let (left, rests) = match round {
-        AnyRound::Plane(round) => (share_left(round), rests(round)),
-        AnyRound::Space(round) => (share_left(round), rests(round)),
+    // A tool of a playground takes the touch away from the hand.
+    if !round.has_basket() {
+        return false;
+    }
+    let share = round.level().game().share;
+    let (left, is_still) = match round {
+        AnyRound::Plane(round) => (share_left(round), is_still(round)),
+        AnyRound::Space(round) => (share_left(round), is_still(round)),
     };
-    let too_little = round.has_basket() && left < round.level().game().share;
-    too_little || lost_condition(round).is_some() || rests && !is_any_held(round)
+    let is_stuck = is_still && round.progress().inside < share && !can_any_hand_act(round);
+    left < share || lost_condition(round).is_some() || is_stuck
 }
 
-/// Whether a hand touches bodies or holds a joint.
-fn is_any_held(round: &AnyRound) -> bool {
+/// Returns whether a hand, or a part of it, touches bodies or holds a joint.
+fn can_any_hand_act(round: &AnyRound) -> bool {
     match round {
-        AnyRound::Plane(round) => is_held(round),
-        AnyRound::Space(round) => is_held(round),
+        AnyRound::Plane(round) => can_hands_act(round.world()),
+        AnyRound::Space(round) => can_hands_act(round.world()),
     }
 }
 
-fn is_held<D: Dim>(round: &Round<D>) -> bool {
-    let world = round.world();
+fn can_hands_act<D: Dim>(world: &World<D>) -> bool {
     let is_hand = |anchor: &JointAnchor<D>| match anchor {
         JointAnchor::RigidBody { body, .. } => { world.rigid_body(*body) }.is_ok_and(is_hand),
         JointAnchor::Point(_) | JointAnchor::SoftBody { .. } => false,
     };
-    round.hands().any(|hand| hand.layers().filters != 0) || { world.joints() }
-        .any(|(_, joint)| joint.definition().anchors.iter().any(is_hand))
+    let mut joints = world.joints();
+    hands(world).any(|(_, hand)| hand.layers().filters != 0)
+        || joints.any(|(_, joint)| joint.definition().anchors.iter().any(is_hand))
 }
 
-/// Whether all pieces rest.
-fn rests<D: Dim>(round: &Round<D>) -> bool {
-    let mut pieces = { round.counted_bodies() }.flat_map(|body| body.piece_views());
+/// Returns whether all pieces and free rigid bodies rest.
+fn is_still<D: Dim>(round: &Round<D>) -> bool {
+    let world = round.world();
+    let mut pieces = { world.soft_bodies() }.flat_map(|(_, body)| body.piece_views());
+    let mut free = obstacles(world).filter(|body| body.is_dynamic());
     pieces.all(|piece| piece.velocity.length() < SLOW)
+        && free.all(|body| body.velocity().linear.to_vec3().length() < SLOW)
 }
 
 /// Returns the condition of the level that can no longer be met.
@@ -222,10 +230,16 @@ mod tests {
         let empty = text.replace("[[hand]]", "[[hand]]\nlayers = { filters = 0 }");
         let rope = "\n[[joint]]\nkind = \"rope\"\nlength = 3.0\n\
                     anchors = [{ hand = 1, point = [0.0, 0.0, 0.0] }, { point = [0.0, 0.5, 0.0] }]\n";
-        for (text, expected) in [(text, false), (empty.clone(), true), (empty + rope, false)] {
+        let part = "\n[[hand]]\nradius = 0.05\nfollows = 1\npath = [[0.0, -1.5, -0.9, 0.0]]\n";
+        for (text, expected) in [
+            (text, false),
+            (empty.clone(), true),
+            (empty.clone() + part, false),
+            (empty + rope, false),
+        ] {
             let round = after(level(&text), 60);
             assert_eq!(
-                (is_hopeless(&round), !is_any_held(&round)),
+                (is_hopeless(&round), !can_any_hand_act(&round)),
                 (expected, expected)
             );
         }

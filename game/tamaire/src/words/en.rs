@@ -26,7 +26,7 @@ pub(super) const WORDS: Words = Words {
     next: "Next",
     other_way: |route| match route {
         Route::Squeeze => "Now try shaving it to fit!",
-        Route::Shave | Route::Mix => "Now try to get it in whole!",
+        Route::Shave | Route::Mix => "Now try squeezing it in whole!",
     },
     route: |route| match route {
         Route::Squeeze => "It went in whole!",
