@@ -583,7 +583,7 @@ fn goals_are_listed_in_pause_and_ticked_off() {
     });
     press(&mut window, Key::P);
     window.get_by_label("× squeeze it in whole");
-    window.get_by_label("tear off at most 10 %");
+    window.get_by_label("☆ tear off at most 10 %");
 }
 
 #[test]
