@@ -130,7 +130,7 @@ impl<D: Dim> Round<D> {
                 for joint in joints_of(&world, hand) {
                     world.remove(joint).expect("the world has this joint");
                 }
-                for knife in knives_of(&world, hand) {
+                for (knife, _) in knives_of(&world, hand) {
                     world.remove(knife).expect("the world has this knife");
                 }
                 world.remove(hand).expect("the world has this hand");
@@ -568,8 +568,8 @@ fn hands_of<D: Dim>(scene: &Scene, world: &World<D>) -> (Vec<PlayerHand>, Vec<St
             followers: handles,
         };
         let knives = player.parts().map(|hand| {
-            let knives = world.knives().map(|(_, knife)| knife.definition());
-            knives.filter(|knife| knife.holder == hand).collect()
+            let knives = knives_of(world, hand).into_iter();
+            knives.map(|(_, knife)| knife).collect()
         });
         let start = StartHand {
             hand: all[index].1.definition(),
@@ -593,10 +593,10 @@ fn joints_of<D: Dim>(world: &World<D>, rigid: RigidBodyHandle) -> Vec<JointHandl
 }
 
 /// Returns the knives of a rigid body.
-fn knives_of<D: Dim>(world: &World<D>, rigid: RigidBodyHandle) -> Vec<KnifeHandle> {
+fn knives_of<D: Dim>(world: &World<D>, rigid: RigidBodyHandle) -> Vec<(KnifeHandle, Knife<D>)> {
     let knives = world.knives();
-    let knives = knives.filter(|(_, knife)| knife.definition().holder == rigid);
-    knives.map(|(knife, _)| knife).collect()
+    let knives = knives.map(|(handle, knife)| (handle, knife.definition()));
+    knives.filter(|(_, knife)| knife.holder == rigid).collect()
 }
 
 /// Returns the targets of all hands of a level at the start [m]. In 2D the third coordinate is zero.

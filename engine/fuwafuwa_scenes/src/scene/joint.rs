@@ -69,12 +69,12 @@ pub(super) struct SceneHandles {
 }
 
 impl SceneHandles {
-    /// Returns the rigid body with the number of an obstacle, of a hand or of a rigid body, in this order. `None`
-    /// without a number.
-    pub(super) fn rigid(
+    /// Returns the rigid body with the number of an obstacle, of a hand or of a rigid body, in this order, and the field
+    /// of that number. `None` without a number.
+    pub(super) fn numbered_rigid_body(
         &self,
         numbers: [Option<usize>; 3],
-    ) -> Result<Option<RigidBodyHandle>, FieldError> {
+    ) -> Result<Option<(&'static str, RigidBodyHandle)>, FieldError> {
         let lists = [
             ("obstacle", &self.obstacles),
             ("hand", &self.hands),
@@ -82,7 +82,7 @@ impl SceneHandles {
         ];
         let mut named = lists.into_iter().zip(numbers);
         let named = named.find_map(|((field, list), number)| Some((field, list, number?)));
-        let body = named.map(|(field, list, number)| nth(field, number, list));
+        let body = named.map(|(field, list, number)| Ok((field, nth(field, number, list)?)));
         body.transpose()
     }
 }
@@ -182,7 +182,7 @@ impl JointAnchorText {
             let radius = self.radius.unwrap_or(0.0);
             return Ok(JointAnchor::on(body, point).within(radius));
         }
-        if let Some(body) = known.rigid(rigid)? {
+        if let Some((_, body)) = known.numbered_rigid_body(rigid)? {
             return Ok(JointAnchor::on(body, point));
         }
         Ok(JointAnchor::Point(point))

@@ -36,14 +36,14 @@ impl KnifeText {
         let numbers = [self.obstacle, self.hand, self.rigid_body];
         let count = numbers.iter().flatten().count();
         let expected = "expected one of obstacle, hand and rigid_body";
-        require(count == 1, "hand", expected)?;
-        let holder = known.rigid(numbers)?;
-        let holder = holder.ok_or_else(|| FieldError::new("hand", expected))?;
+        require(count <= 1, "hand", expected)?;
+        let holder = known.numbered_rigid_body(numbers)?;
+        let (named, holder) = holder.ok_or_else(|| FieldError::new("hand", expected))?;
         let [from, to] = self.edge;
         let edge = [vector_of::<D>("edge", from)?, vector_of::<D>("edge", to)?];
         let toward = vector_of::<D>("toward", self.toward)?;
         let body = world.rigid_body(holder);
-        let body = body.map_err(|error| FieldError::engine("hand", error))?;
+        let body = body.map_err(|error| FieldError::engine(named, error))?;
         let (place, back) = (body.position(), body.rotation().inverse());
         let edge = edge.map(|end| back.apply(end - place));
         let mut knife = Knife::new(holder, edge, back.apply(toward));
@@ -52,12 +52,9 @@ impl KnifeText {
         let refused = |error: fuwafuwa::Error| match error {
             // The engine names the handle; the file has a number.
             fuwafuwa::Error::InvalidParameter { field, .. } if field == "holder" => {
-                let named = ["obstacle", "hand", "rigid_body"].into_iter().zip(numbers);
-                let mut named = named.filter(|(_, number)| number.is_some());
-                let field = named.next().map_or("hand", |(field, _)| field);
                 let expected = "expected a hand, an obstacle with a path or an angular_velocity, or a kinematic or coupled \
                                 rigid body";
-                FieldError::new(field, expected)
+                FieldError::new(named, expected)
             }
             error => FieldError::engine("edge", error),
         };
