@@ -7,6 +7,7 @@
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Vec3};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -29,8 +30,10 @@ const LOOK: usize = 60;
 /// Tolerated depth of a piece in a wall, in voxels. A crumb between a hand and a wall is pressed flat and
 /// slightly into the wall.
 const MARGIN: f32 = 1.0;
-/// Tolerated depth of a hand, or of the centre of a piece, in a wall [m].
+/// Tolerated depth of a hand in a wall [m], and of the centre of a piece that stays there.
 const HAND_MARGIN: f32 = 1e-3;
+/// Number of checks in a row in which the centre of a piece may be deeper in a wall, pressed by a hand.
+const PRESSED: u32 = 3;
 
 /// Maximum memory per element or node [bytes]. Memory is checked per part because tearing adds elements and
 /// nodes.
@@ -136,6 +139,7 @@ fn play<D: Dim>(level: Level, minutes: usize) -> Result<(), String> {
     let mut round = Round::<D>::new(Arc::new(level));
     let mut bot = Bot::new(BotKind::Random, SEED);
     let (mut times, mut deepest, mut held) = (Vec::new(), f32::MIN, Vec::new());
+    let mut pressed = BTreeMap::new();
     for tick in 1..=minutes * MINUTE {
         let frame = bot.frame(&round);
         let start = Instant::now();
@@ -148,7 +152,7 @@ fn play<D: Dim>(level: Level, minutes: usize) -> Result<(), String> {
         if !tick.is_multiple_of(LOOK) {
             continue;
         }
-        deepest = deepest.max(depth(&round).map_err(wrong)?);
+        deepest = deepest.max(depth(&round, &mut pressed).map_err(wrong)?);
         held.push(held_each(&round));
         if tick.is_multiple_of(MINUTE) {
             times.sort_by(f32::total_cmp);
@@ -172,8 +176,11 @@ fn play<D: Dim>(level: Level, minutes: usize) -> Result<(), String> {
 }
 
 /// Returns how deep the deepest node is in a wall [m]. Returns an error if something is outside the room or
-/// not finite.
-fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
+/// not finite. `pressed` counts the checks in a row in which the centre of a piece is in a wall, by body and piece.
+fn depth<D: Dim>(
+    round: &Round<D>,
+    pressed: &mut BTreeMap<(usize, u32), u32>,
+) -> Result<f32, String> {
     let [low, high] = round.level().arena();
     let beyond = |from: Vec3, to: Vec3| {
         let axes = (0..D::N).map(|axis| (low[axis] - from[axis]).max(to[axis] - high[axis]));
@@ -187,16 +194,24 @@ fn depth<D: Dim>(round: &Round<D>) -> Result<f32, String> {
         }
     }
     let mut deepest = f32::MIN;
-    for (_, body) in round.world().soft_bodies() {
+    let before = std::mem::take(pressed);
+    for (number, (_, body)) in round.world().soft_bodies().enumerate() {
         for piece in body.piece_views() {
             let depth = beyond(piece.low, piece.high);
             // Checks the centre too, because the bounds ignore non-finite values.
             let middle = beyond(piece.centre, piece.centre);
-            if !piece.centre.is_finite()
-                || depth > MARGIN * body.grid().voxel_size()
-                || middle > HAND_MARGIN
-            {
-                return Err(format!("a piece is {depth} m out of the room: {piece:?}"));
+            let most = MARGIN * body.grid().voxel_size();
+            let mut stays = false;
+            if middle > HAND_MARGIN {
+                let key = (number, piece.number.0);
+                let count = before.get(&key).map_or(1, |count| count + 1);
+                pressed.insert(key, count);
+                stays = count > PRESSED;
+            }
+            if !piece.centre.is_finite() || depth > most || middle > most || stays {
+                return Err(format!(
+                    "a piece is {depth} m out of the room, its centre {middle} m: {piece:?}"
+                ));
             }
             deepest = deepest.max(depth);
         }
