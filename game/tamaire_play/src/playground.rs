@@ -9,7 +9,7 @@ use fuwafuwa::{
     SoftBodyHandle, Vec3, World,
 };
 use fuwafuwa_scenes::Scene;
-use fuwafuwa_scenes::scene::Form;
+use fuwafuwa_scenes::scene::{BodyText, Form, MaterialText};
 use serde::{Deserialize, Serialize};
 
 /// Maximum number of nodes of all bodies together. Then no more bodies can be added.
@@ -44,16 +44,19 @@ pub enum Stuff {
     Clay,
     /// Very stiff and heavy, and does not tear.
     Stone,
+    /// Can be drawn out far, and keeps that shape.
+    Caramel,
 }
 
 impl Stuff {
     /// All materials. Their numbers in added bodies follow this order, from 1.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Jelly,
         Self::Rubber,
         Self::Biscuit,
         Self::Clay,
         Self::Stone,
+        Self::Caramel,
     ];
 
     /// Returns the number of the material in added bodies, which decides their colour.
@@ -62,23 +65,45 @@ impl Stuff {
         1 + place.expect("every material is listed") as u8
     }
 
-    /// Returns the table of the material in a scene file. It is unbreakable if its nature or the level says so.
-    fn text(self, is_unbreakable: bool) -> String {
-        let (body, tears) = match self {
-            Self::Jelly => ("young = 2500.0", Some([1200.0, 150.0])),
-            Self::Rubber => ("young = 9000.0", None),
-            Self::Biscuit => ("young = 12000.0", Some([1500.0, 120.0])),
-            Self::Clay => (
-                "young = 6000.0\nyield_strain = 0.05\nplastic_limit = 2.5",
-                Some([4000.0, 600.0]),
-            ),
-            Self::Stone => ("young = 20000.0\ndensity = 300.0", None),
+    /// Returns the table of the material in a scene file, without a colour.
+    pub fn material(self) -> MaterialText {
+        let (young, tears) = match self {
+            Self::Jelly => (2500.0, Some([1200.0, 150.0])),
+            Self::Rubber => (9000.0, None),
+            Self::Biscuit => (12_000.0, Some([1500.0, 120.0])),
+            Self::Clay => (6000.0, Some([4000.0, 600.0])),
+            Self::Stone => (20_000.0, None),
+            Self::Caramel => (4000.0, Some([3000.0, 900.0])),
         };
-        match tears.filter(|_| !is_unbreakable) {
-            Some([strength, toughness]) => {
-                format!("{body}\nstrength = {strength}\ntoughness = {toughness}")
-            }
-            None => format!("{body}\nunbreakable = true"),
+        let plastic = match self {
+            Self::Clay => Some([0.05, 2.5]),
+            Self::Caramel => Some([0.1, 4.0]),
+            _ => None,
+        };
+        MaterialText {
+            young: Some(young),
+            density: (self == Self::Stone).then_some(300.0),
+            mass_damping: (self == Self::Caramel).then_some(12.0),
+            strength: tears.map(|[strength, _]| strength),
+            toughness: tears.map(|[_, toughness]| toughness),
+            yield_strain: plastic.map(|[strain, _]| strain),
+            plastic_limit: plastic.map(|[_, limit]| limit),
+            unbreakable: tears.is_none(),
+            ..MaterialText::default()
+        }
+    }
+
+    /// Returns the table of the material, which never tears if the level says so.
+    fn material_of_level(self, is_unbreakable: bool) -> MaterialText {
+        let material = self.material();
+        match is_unbreakable {
+            false => material,
+            true => MaterialText {
+                strength: None,
+                toughness: None,
+                unbreakable: true,
+                ..material
+            },
         }
     }
 }
@@ -367,17 +392,20 @@ impl<D: Dim> Round<D> {
             at[2] = 0.0;
         }
         let is_unbreakable = self.is_unbreakable();
-        let material = |stuff: Stuff| format!("[[material]]\n{}\n", stuff.text(is_unbreakable));
-        let materials = Stuff::ALL.map(material).concat();
         let invalid = |error: &dyn std::fmt::Display| ChangeError::Invalid(error.to_string());
-        let form = toml::Value::try_from(form).map_err(|error| invalid(&error))?;
-        let number = stuff.number();
-        let text = format!(
-            "dim = {}\n{materials}[[body]]\nshape = {form}\nn = {}\nwidth = {WIDTH}\nmaterial = {number}\nat = {at:?}\n",
-            D::N,
-            VOXELS[D::N - 2],
-        );
-        let scene = Scene::read("body", &text, &[]).map_err(|error| invalid(&error))?;
+        let scene = Scene::read("body", &format!("dim = {}", D::N), &[]);
+        let mut scene = scene.map_err(|error| invalid(&error))?;
+        scene.material = Stuff::ALL
+            .map(|stuff| stuff.material_of_level(is_unbreakable))
+            .into();
+        scene.body.push(BodyText {
+            shape: Some(form),
+            n: Some(VOXELS[D::N - 2]),
+            width: WIDTH,
+            material: Some(stuff.number()),
+            at,
+            ..BodyText::default()
+        });
         let mut world = scene.build::<D>().map_err(|error| invalid(&error))?;
         let body = world.nth_soft_body(0);
         let body = body.expect("the scene has a body");

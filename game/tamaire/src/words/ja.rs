@@ -429,6 +429,7 @@ pub(super) const WORDS: Words = Words {
         Stuff::Biscuit => "ビスケット",
         Stuff::Clay => "ねんど",
         Stuff::Stone => "石",
+        Stuff::Caramel => "キャラメル",
     },
     add_form: |form| match form {
         Form::Ball | Form::Empty => "ボールを だす",
