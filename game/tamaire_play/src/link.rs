@@ -131,10 +131,7 @@ impl Replay {
     /// # Errors
     /// As [`Replay::link`].
     pub fn code(&self) -> Result<String, LinkError> {
-        let sent = sealed(ROUND, &self.sent()?);
-        let code = format!("{ROUND}{DIGITS}{}{END}", digits::write(&sent));
-        check_length(code.len())?;
-        Ok(code)
+        in_digits(ROUND, &self.sent()?)
     }
 
     fn sent(&self) -> Result<(u32, SentRound, Extras), LinkError> {
@@ -193,10 +190,22 @@ impl Level {
     /// # Errors
     /// [`LinkError`] if the fragment is too long.
     pub fn link(&self) -> Result<String, LinkError> {
-        let id: String = stem(&self.id).chars().take(MAX_NAME).collect();
-        let fragment = packed(LEVEL, &SentLevel::of(&id, self.scene())?);
+        let fragment = packed(LEVEL, &self.sent()?);
         check_length(fragment.len())?;
         Ok(fragment)
+    }
+
+    /// Returns the level as a fragment in decimal digits, for a QR code; see [`Replay::code`].
+    ///
+    /// # Errors
+    /// As [`Level::link`].
+    pub fn code(&self) -> Result<String, LinkError> {
+        in_digits(LEVEL, &self.sent()?)
+    }
+
+    fn sent(&self) -> Result<SentLevel, LinkError> {
+        let id: String = stem(&self.id).chars().take(MAX_NAME).collect();
+        SentLevel::of(&id, self.scene())
     }
 }
 
@@ -350,6 +359,13 @@ fn parts(fragment: &str) -> Result<(char, &str), LinkError> {
 
 fn packed(kind: char, sent: &impl Serialize) -> String {
     format!("{kind}{FORMAT}{}{END}", BASE64.encode(sealed(kind, sent)))
+}
+
+/// Encodes a value as a fragment in decimal digits.
+fn in_digits(kind: char, sent: &impl Serialize) -> Result<String, LinkError> {
+    let code = format!("{kind}{DIGITS}{}{END}", digits::write(&sealed(kind, sent)));
+    check_length(code.len())?;
+    Ok(code)
 }
 
 /// Encodes a value as bytes, with the checksum in front.

@@ -12,6 +12,12 @@ use std::collections::BTreeSet;
 pub struct GameText {
     /// Name of the level.
     pub name: LocalizedText,
+    /// Name of its maker, as the maker wants to be called.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made_by: Option<String>,
+    /// Name of the level from which it was made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub changed_from: Option<String>,
     /// Region that must be filled, enclosed by the wooden bars.
     pub basket: Option<BoxText>,
     /// Several regions that must all be filled at the same time, in place of `basket`.
