@@ -1,0 +1,272 @@
+//! Checks of a level before it is kept: whether bots win it, and whether it runs in real time.
+//!
+//! The checks are computed in small portions, so that a screen can show their progress. They forbid nothing.
+
+use fuwafuwa::DEFAULT_TICK;
+use std::sync::Arc;
+use tamaire_play::bot::StraightPush;
+use tamaire_play::{AnyRound, Bot, BotKind, Level, Route};
+
+/// Maximum length of a round of a bot [s].
+pub const SECONDS: f32 = 45.0;
+/// Seeds with which each bot plays.
+const SEEDS: [u64; 2] = [1, 2];
+/// Speed at which the bot pushes that only pushes straight [m/s].
+const STRAIGHT: f32 = 0.7;
+/// Speed of a small machine, as a share of this one.
+const SMALL: f64 = 0.5;
+/// Share of the ticks that must be computed in time.
+const IN_TIME: f64 = 0.99;
+
+/// A player of the checks.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum Player {
+    Bot(BotKind),
+    Straight,
+}
+
+/// Result of a check.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub enum Finding {
+    /// The check is not finished.
+    #[default]
+    Open,
+    /// It is the case; for a win with its shortest time [s].
+    Yes(Option<f32>),
+    /// No bot has found it. A person may.
+    NotFound,
+}
+
+/// Results of the checks.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct Findings {
+    /// Whether the body can be squeezed in.
+    pub squeezed: Finding,
+    /// Whether it can be shaved to fit.
+    pub shaved: Finding,
+    /// Whether a bot wins that only pushes straight, so that the level may be too simple.
+    pub straight: Finding,
+    /// Whether small machines, half as fast as this one, compute it in real time.
+    pub real_time: Finding,
+}
+
+/// Checks of a level in progress.
+pub struct Check {
+    level: Arc<Level>,
+    /// Rounds that are left, the next one last.
+    left: Vec<(Player, u64)>,
+    all: usize,
+    running: Option<(AnyRound, Running)>,
+    findings: Findings,
+    /// Times of the ticks [s].
+    times: Vec<f32>,
+}
+
+enum Running {
+    Bot(Box<Bot>),
+    Straight(StraightPush),
+}
+
+impl Check {
+    /// Begins to check a level. Without a basket only its speed is checked.
+    pub fn new(level: Arc<Level>) -> Self {
+        let (squeeze, shave) = (Player::Bot(BotKind::Squeeze), Player::Bot(BotKind::Shave));
+        let mut left = Vec::new();
+        let mut findings = Findings::default();
+        if level.has_basket() {
+            for &seed in SEEDS.iter().rev() {
+                left.push((Player::Straight, seed));
+                if level.routes().contains(&Route::Shave) {
+                    left.push((shave, seed));
+                }
+                left.push((squeeze, seed));
+            }
+        } else {
+            left.push((Player::Bot(BotKind::Random), SEEDS[0]));
+            findings.squeezed = Finding::NotFound;
+            findings.straight = Finding::NotFound;
+        }
+        if !left.iter().any(|(player, _)| *player == shave) {
+            findings.shaved = Finding::NotFound;
+        }
+        Self {
+            level,
+            all: left.len(),
+            left,
+            running: None,
+            findings,
+            times: Vec::new(),
+        }
+    }
+
+    /// Returns the level.
+    pub fn level(&self) -> &Arc<Level> {
+        &self.level
+    }
+
+    /// Returns what is known so far.
+    pub fn findings(&self) -> &Findings {
+        &self.findings
+    }
+
+    /// Whether all checks are finished.
+    pub fn is_done(&self) -> bool {
+        self.left.is_empty() && self.running.is_none()
+    }
+
+    /// Returns the share of the checks that is finished, 0 to 1.
+    pub fn progress(&self) -> f32 {
+        if self.is_done() {
+            return 1.0;
+        }
+        let share = self.running.as_ref().map_or(0.0, |(round, _)| {
+            (round.ticks() as f32 * DEFAULT_TICK / SECONDS).min(1.0)
+        });
+        let waiting = self.left.len() + usize::from(self.running.is_some());
+        ((self.all - waiting) as f32 + share) / self.all as f32
+    }
+
+    /// Goes on with the checks for about `budget` [s], as measured with `now`, the time since any moment [s].
+    pub fn go_on(&mut self, budget: f64, now: impl Fn() -> f64) {
+        let began = now();
+        while !self.is_done() && now() - began < budget {
+            self.tick(&now);
+        }
+    }
+
+    fn tick(&mut self, now: &impl Fn() -> f64) {
+        let Some((round, running)) = &mut self.running else {
+            self.begin_next();
+            return;
+        };
+        let frame = match running {
+            Running::Bot(bot) => round.ask(bot),
+            Running::Straight(bot) => match round {
+                AnyRound::Plane(round) => bot.frame(round),
+                AnyRound::Space(round) => bot.frame(round),
+            },
+        };
+        let began = now();
+        round.step(frame);
+        self.times.push((now() - began) as f32);
+        let is_over = round.ticks() as f32 * DEFAULT_TICK >= SECONDS;
+        let outcome = round.progress().outcome;
+        if outcome.is_none() && !is_over {
+            return;
+        }
+        if let Some(outcome) = outcome {
+            let found = match (&*running, outcome.route) {
+                (Running::Straight(_), _) => &mut self.findings.straight,
+                (_, Route::Squeeze) => &mut self.findings.squeezed,
+                (_, Route::Shave | Route::Mix) => &mut self.findings.shaved,
+            };
+            let before = match *found {
+                Finding::Yes(Some(seconds)) => seconds,
+                _ => f32::INFINITY,
+            };
+            *found = Finding::Yes(Some(outcome.seconds().min(before)));
+        }
+        self.running = None;
+        if self.left.is_empty() {
+            self.conclude();
+        }
+    }
+
+    fn begin_next(&mut self) {
+        // A way that is known need not be found again.
+        let is_known = |player: Player| match player {
+            Player::Bot(BotKind::Squeeze) => self.findings.squeezed != Finding::Open,
+            Player::Bot(BotKind::Shave) => self.findings.shaved != Finding::Open,
+            Player::Bot(_) => false,
+            Player::Straight => self.findings.straight != Finding::Open,
+        };
+        match self.left.pop() {
+            Some((player, _)) if is_known(player) => {}
+            Some((player, seed)) => {
+                let running = match player {
+                    Player::Bot(kind) => Running::Bot(Box::new(Bot::new(kind, seed))),
+                    Player::Straight => Running::Straight(StraightPush::new(false, STRAIGHT, seed)),
+                };
+                self.running = Some((AnyRound::new(self.level.clone()), running));
+            }
+            None => {}
+        }
+        if self.is_done() {
+            self.conclude();
+        }
+    }
+
+    /// Decides what is still open after the last round.
+    fn conclude(&mut self) {
+        let Findings {
+            squeezed,
+            shaved,
+            straight,
+            real_time,
+        } = &mut self.findings;
+        for open in [squeezed, shaved, straight] {
+            if *open == Finding::Open {
+                *open = Finding::NotFound;
+            }
+        }
+        self.times.sort_by(f32::total_cmp);
+        let at = (IN_TIME * self.times.len() as f64) as usize;
+        let slow = self.times.get(at).copied().unwrap_or(0.0);
+        let is_in_time = f64::from(slow) <= SMALL * f64::from(DEFAULT_TICK);
+        *real_time = match is_in_time {
+            true => Finding::Yes(None),
+            false => Finding::NotFound,
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    /// Checks a level to the end, with ticks that seem to take `seconds`.
+    fn checked(id: &str, seconds: f64) -> Check {
+        let mut check = Check::new(Arc::new(Level::open(id).unwrap()));
+        let time = Cell::new(0.0);
+        // Each tick asks for the time before and after it, and once before that.
+        let now = || {
+            time.set(time.get() + seconds);
+            time.get()
+        };
+        let mut before = 0.0;
+        while !check.is_done() {
+            check.go_on(100.0 * seconds, now);
+            assert!(check.progress() >= before);
+            before = check.progress();
+        }
+        check
+    }
+
+    #[test]
+    fn classic_can_be_squeezed_and_shaved() {
+        let check = checked("classic", 0.001);
+        let Findings {
+            squeezed,
+            shaved,
+            real_time,
+            ..
+        } = *check.findings();
+        for found in [squeezed, shaved] {
+            let Finding::Yes(Some(seconds)) = found else {
+                panic!("{found:?}");
+            };
+            assert!(seconds > 0.5 && seconds <= SECONDS);
+        }
+        assert_eq!(real_time, Finding::Yes(None));
+    }
+
+    #[test]
+    fn slow_playground_is_told_to_be_slow_and_has_no_ways() {
+        let check = checked("sandbox", 0.012);
+        let findings = check.findings();
+        assert_eq!(findings.real_time, Finding::NotFound);
+        assert_eq!(findings.squeezed, Finding::NotFound);
+        assert_eq!(check.progress(), 1.0);
+    }
+}

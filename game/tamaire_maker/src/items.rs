@@ -1,0 +1,174 @@
+//! Everything that has a place in a level: what can be selected, moved, copied, removed and added.
+//!
+//! The operations keep a level playable: numbers that name other things follow, things that hold to moved ones move along,
+//! and sizes and coordinates stay in their ranges. Only three things can still make a level unplayable: bodies outside the
+//! view, more voxels than a level may have, and a name that is missing or too long.
+
+mod additions;
+mod arrangement;
+mod bounds;
+mod clip;
+mod goals;
+mod motion;
+mod movement;
+mod removal;
+#[cfg(test)]
+pub(crate) mod tests;
+
+pub use additions::{Kind, add};
+pub use arrangement::{Guide, aligned, snapped};
+pub use bounds::bounds;
+pub use clip::{Clip, copy, paste};
+pub use goals::is_possible;
+pub use movement::{rotate, stretch, translate};
+pub use removal::{Dropped, Removed, remove};
+
+use fuwafuwa::Vec3;
+use fuwafuwa_scenes::Scene;
+use fuwafuwa_scenes::scene::{HandText, JointAnchorText, KnifeText};
+use std::collections::BTreeSet;
+
+/// Maximum absolute coordinate of the middle of an item [m]. It is the limit of the view of a level.
+pub const MAX_COORDINATE: f32 = 3.9;
+
+/// Something that has a place in a level, by its index in its list, counted from 0.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Item {
+    /// Soft body.
+    Body(usize),
+    /// Obstacle.
+    Obstacle(usize),
+    /// Hand of a player, or a part of it.
+    Hand(usize),
+    /// Rigid body.
+    RigidBody(usize),
+    /// Rope, spring or pin.
+    Joint(usize),
+    /// Knife.
+    Knife(usize),
+    /// Switch.
+    Switch(usize),
+    /// Field of acceleration.
+    Field(usize),
+    /// Basket. Index 0 is `game.basket` if it is set; otherwise the indices are those of `game.baskets`.
+    Basket(usize),
+}
+
+/// Returns all items of a scene, in the order of [`Item`].
+pub fn items(scene: &Scene) -> Vec<Item> {
+    let all = (0..scene.body.len()).map(Item::Body);
+    let all = all.chain((0..scene.obstacle.len()).map(Item::Obstacle));
+    let all = all.chain((0..scene.hand.len()).map(Item::Hand));
+    let all = all.chain((0..scene.rigid_body.len()).map(Item::RigidBody));
+    let all = all.chain((0..scene.joint.len()).map(Item::Joint));
+    let all = all.chain((0..scene.knife.len()).map(Item::Knife));
+    let all = all.chain((0..scene.switch.len()).map(Item::Switch));
+    let all = all.chain((0..scene.field.len()).map(Item::Field));
+    all.chain((0..basket_count(scene)).map(Item::Basket))
+        .collect()
+}
+
+impl Item {
+    /// Returns whether a scene has the item.
+    pub fn is_in(self, scene: &Scene) -> bool {
+        match self {
+            Self::Body(index) => index < scene.body.len(),
+            Self::Obstacle(index) => index < scene.obstacle.len(),
+            Self::Hand(index) => index < scene.hand.len(),
+            Self::RigidBody(index) => index < scene.rigid_body.len(),
+            Self::Joint(index) => index < scene.joint.len(),
+            Self::Knife(index) => index < scene.knife.len(),
+            Self::Switch(index) => index < scene.switch.len(),
+            Self::Field(index) => index < scene.field.len(),
+            Self::Basket(index) => index < basket_count(scene),
+        }
+    }
+}
+
+/// Returns those of the items that the scene has, without repetitions.
+fn existing(scene: &Scene, items: &[Item]) -> BTreeSet<Item> {
+    let items = items.iter().copied();
+    items.filter(|item| item.is_in(scene)).collect()
+}
+
+/// Returns the items, with the hands that follow the hands among them.
+fn with_followers(scene: &Scene, mut items: BTreeSet<Item>) -> BTreeSet<Item> {
+    for (index, hand) in scene.hand.iter().enumerate() {
+        if leader_of(hand).is_some_and(|leader| items.contains(&Item::Hand(leader))) {
+            items.insert(Item::Hand(index));
+        }
+    }
+    items
+}
+
+/// Returns the index of the hand that a hand follows.
+fn leader_of(hand: &HandText) -> Option<usize> {
+    hand.follows?.checked_sub(1)
+}
+
+/// Returns the index of the first hand that follows no other one.
+fn first_leader(scene: &Scene) -> Option<usize> {
+    scene.hand.iter().position(|hand| hand.follows.is_none())
+}
+
+/// Returns the item to which an anchor holds; `None` for a fixed point.
+fn holder_of_anchor(anchor: &JointAnchorText) -> Option<Item> {
+    let of = |number: Option<usize>, item: fn(usize) -> Item| number?.checked_sub(1).map(item);
+    of(anchor.body, Item::Body)
+        .or_else(|| of(anchor.obstacle, Item::Obstacle))
+        .or_else(|| of(anchor.hand, Item::Hand))
+        .or_else(|| of(anchor.rigid_body, Item::RigidBody))
+}
+
+/// Returns the item to which a knife is fixed.
+fn holder_of_knife(knife: &KnifeText) -> Option<Item> {
+    let of = |number: Option<usize>, item: fn(usize) -> Item| number?.checked_sub(1).map(item);
+    of(knife.obstacle, Item::Obstacle)
+        .or_else(|| of(knife.hand, Item::Hand))
+        .or_else(|| of(knife.rigid_body, Item::RigidBody))
+}
+
+fn basket_count(scene: &Scene) -> usize {
+    match &scene.game {
+        Some(game) if game.basket.is_some() => 1,
+        Some(game) => game.baskets.len(),
+        None => 0,
+    }
+}
+
+/// Returns the centre and the half widths of a basket.
+fn basket(scene: &Scene, index: usize) -> Option<([f32; 3], [f32; 3])> {
+    let game = scene.game.as_ref()?;
+    match &game.basket {
+        Some(only) => (index == 0).then_some((only.centre, only.half)),
+        None => game
+            .baskets
+            .get(index)
+            .map(|basket| (basket.centre, basket.half)),
+    }
+}
+
+fn basket_mut(scene: &mut Scene, index: usize) -> Option<(&mut [f32; 3], &mut [f32; 3])> {
+    let game = scene.game.as_mut()?;
+    match &mut game.basket {
+        Some(only) => (index == 0).then_some((&mut only.centre, &mut only.half)),
+        None => {
+            let basket = game.baskets.get_mut(index);
+            basket.map(|basket| (&mut basket.centre, &mut basket.half))
+        }
+    }
+}
+
+/// Returns the vector with a third coordinate of 0 in 2D.
+fn flat(dim: u8, vector: Vec3) -> Vec3 {
+    match dim {
+        2 => vector.with_z(0.0),
+        _ => vector,
+    }
+}
+
+/// Rounds a coordinate to 0.01 mm, so that it has few digits in the text of the level.
+fn rounded(number: f32) -> f32 {
+    // The sum turns −0 into 0.
+    ((f64::from(number) * 1e5).round() / 1e5) as f32 + 0.0
+}

@@ -1,0 +1,77 @@
+//! Grids and guides by which items are placed.
+
+use super::{Item, bounds, existing, items, rounded, with_followers};
+use fuwafuwa::Vec3;
+use fuwafuwa_scenes::Scene;
+
+/// Line at which moved items are aligned.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Guide {
+    /// Axis on which the line has a coordinate; it runs across it.
+    pub axis: usize,
+    /// Coordinate [m].
+    pub at: f32,
+}
+
+/// Returns the point of a grid nearest to a position [m]. A grid width that is not positive leaves the position as it is.
+pub fn snapped(value: Vec3, grid: f32) -> Vec3 {
+    if !(grid > 0.0 && grid.is_finite()) {
+        return value;
+    }
+    let snap = |k: f32| {
+        let nearest = (f64::from(k) / f64::from(grid)).round() * f64::from(grid);
+        rounded(nearest as f32)
+    };
+    Vec3::from(value.to_array().map(snap))
+}
+
+/// Aligns items that are moved by `by` [m], as drawing programs do it: on each axis, an edge or the middle of the box around
+/// the items is aligned with an edge or the middle of another item or of the view, or with an upright plane, if that is
+/// within `reach` [m]. Returns the translation after that, and the lines to draw.
+pub fn aligned(scene: &Scene, moving: &[Item], by: Vec3, reach: f32) -> (Vec3, Vec<Guide>) {
+    let moving = with_followers(scene, existing(scene, moving));
+    let boxes = moving.iter().filter_map(|item| bounds(scene, *item));
+    let hull = boxes
+        .reduce(|[low, high], [other_low, other_high]| [low.min(other_low), high.max(other_high)]);
+    let Some([low, high]) = hull.filter(|_| by.is_finite()) else {
+        return (by, Vec::new());
+    };
+    let lines = |axis: usize, [low, high]: [Vec3; 2]| {
+        [low[axis], 0.5 * (low[axis] + high[axis]), high[axis]]
+    };
+    let still = items(scene).into_iter();
+    let still = still.filter(|item| !moving.contains(item));
+    let still = still.filter(|item| !matches!(item, Item::Joint(_) | Item::Knife(_)));
+    let still: Vec<Item> = still.collect();
+    let mut boxes: Vec<[Vec3; 2]> = still
+        .iter()
+        .filter_map(|item| bounds(scene, *item))
+        .collect();
+    boxes.push(scene.view.map(Vec3::from));
+    let (mut by, mut guides) = (by, Vec::new());
+    for axis in 0..usize::from(scene.dim.clamp(2, 3)) {
+        let own = lines(axis, [low + by, high + by]);
+        let others = boxes.iter().flat_map(|other| lines(axis, *other));
+        let others = others.chain(planes(scene, axis));
+        let pairs = others.flat_map(|other| own.map(|own| (other - own, other)));
+        let near = pairs.filter(|(apart, _)| apart.abs() <= reach);
+        if let Some((apart, at)) = near.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs())) {
+            by[axis] += apart;
+            guides.push(Guide { axis, at });
+        }
+    }
+    (by, guides)
+}
+
+/// Returns the coordinates of the planes across an axis.
+fn planes(scene: &Scene, axis: usize) -> impl Iterator<Item = f32> {
+    let planes = scene
+        .obstacle
+        .iter()
+        .filter_map(|text| text.half_space.as_ref());
+    let across = planes.filter(move |plane| {
+        let mut others = (0..3).filter(|other| *other != axis);
+        plane.normal[axis] != 0.0 && others.all(|other| plane.normal[other] == 0.0)
+    });
+    across.map(move |plane| plane.point[axis])
+}

@@ -1,0 +1,816 @@
+use super::*;
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Rotation, World};
+use fuwafuwa_scenes::scene::{BodyText, Form};
+use std::f32::consts::{FRAC_PI_2, PI};
+use tamaire_play::Level;
+use tamaire_play::level::built_in;
+use tamaire_play::playground::Stuff;
+
+/// Text of a built-in level, the scene that was read from it, and that with embedded files.
+pub(crate) fn start_of(id: &str) -> (&'static str, Scene, Scene) {
+    let (_, text) = built_in().find(|(known, _)| *known == id).unwrap();
+    let embedded = Level::open(id).unwrap().scene().clone();
+    (text, Scene::read(id, text, &[]).unwrap(), embedded)
+}
+
+fn starts() -> Vec<(&'static str, Scene)> {
+    let all = built_in();
+    all.map(|(id, _)| (id, Level::open(id).unwrap().scene().clone()))
+        .collect()
+}
+
+/// Scene whose bodies have few voxels, so that it is built fast.
+pub(crate) fn small(scene: &Scene) -> Scene {
+    let mut small = scene.clone();
+    let most = if scene.dim == 2 { 20 } else { 10 };
+    for body in &mut small.body {
+        body.diced = None;
+        if body.file.is_some() {
+            *body = BodyText {
+                shape: Some(Form::Ball),
+                n: Some(most),
+                width: body.width,
+                at: body.at,
+                rotation_vector: body.rotation_vector,
+                ..BodyText::default()
+            };
+        }
+        body.n = body.n.map(|n| n.min(most));
+    }
+    small
+}
+
+pub(crate) fn kind(random: &mut fastrand::Rng) -> Kind {
+    let forms = [
+        Form::Ball,
+        Form::Box,
+        Form::Ring,
+        Form::Heart,
+        Form::Flower,
+        Form::Empty,
+    ];
+    match *random.choice(&Kind::ALL).unwrap() {
+        Kind::Body(..) => {
+            let form = *random.choice(&forms).unwrap();
+            Kind::Body(form, *random.choice(&Stuff::ALL).unwrap())
+        }
+        kind => kind,
+    }
+}
+
+fn vector(random: &mut fastrand::Rng, size: f32) -> Vec3 {
+    Vec3::from([0; 3].map(|_| (random.f32() - 0.5) * 2.0 * size))
+}
+
+/// Makes a random change, and returns its description.
+pub(crate) fn edit(scene: &mut Scene, random: &mut fastrand::Rng, clip: &mut Clip) -> String {
+    let all = items(scene);
+    let count = if random.u8(..8) == 0 {
+        all.len()
+    } else {
+        random.usize(1..5)
+    };
+    let mut chosen: Vec<Item> = (0..count).map(|_| *random.choice(&all).unwrap()).collect();
+    if count == all.len() {
+        chosen = all;
+    }
+    let at = vector(random, 1.5);
+    match random.u8(..9) {
+        0 | 1 => {
+            let size = if random.u8(..10) == 0 { 100.0 } else { 0.3 };
+            let by = vector(random, size);
+            translate(scene, &chosen, by);
+            format!("translate {chosen:?} by {by}")
+        }
+        2 => {
+            let size: f32 = if random.u8(..6) == 0 { 30.0 } else { 2.0 };
+            let mut factors = Vec3::from([0; 3].map(|_| size.powf(random.f32() * 2.0 - 1.0)));
+            if random.bool() {
+                factors = Vec3::new(factors.x, 1.0, 1.0);
+            }
+            stretch(scene, &chosen, at, factors);
+            format!("stretch {chosen:?} about {at} by {factors}")
+        }
+        3 | 4 => {
+            let quarters = random.u8(..5) as f32 * FRAC_PI_2;
+            let angle = if random.bool() {
+                quarters
+            } else {
+                random.f32() * 7.0 - 3.5
+            };
+            let any = vector(random, 1.0);
+            let axis = *random.choice(&[Vec3::X, Vec3::Y, Vec3::Z, any]).unwrap();
+            rotate(scene, &chosen, at, axis, angle);
+            format!("rotate {chosen:?} about {at}, {axis} by {angle}")
+        }
+        5 => {
+            remove(scene, &chosen);
+            format!("remove {chosen:?}")
+        }
+        6 => {
+            *clip = copy(scene, &chosen);
+            paste(scene, clip, vector(random, 0.3));
+            format!("copy and paste {chosen:?}")
+        }
+        7 => {
+            let own = clip.clone();
+            paste(scene, &own, vector(random, 0.5));
+            "paste".into()
+        }
+        _ => {
+            let kind = kind(random);
+            add(scene, kind, at);
+            format!("add {kind:?} at {at}")
+        }
+    }
+}
+
+/// Whether a level may become unplayable for this reason.
+fn is_excepted(reason: &str) -> bool {
+    let known = [
+        "bodies in the view",
+        "solid voxels at most",
+        "voxels at most, solid or empty",
+        "letters",
+    ];
+    known.iter().any(|part| reason.contains(part))
+}
+
+#[test]
+fn edits_keep_levels_playable() {
+    let starts: Vec<_> = starts()
+        .into_iter()
+        .map(|(id, scene)| (id, small(&scene)))
+        .collect();
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut checks = 0;
+    for round in 0..1000 {
+        let (id, start) = random.choice(&starts).unwrap();
+        let (mut scene, mut clip) = (start.clone(), Clip::default());
+        let mut edits = Vec::new();
+        for _ in 0..random.usize(1..13) {
+            let before = scene.clone();
+            edits.push(edit(&mut scene, &mut random, &mut clip));
+            if random.u8(..2) > 0 {
+                continue;
+            }
+            checks += 1;
+            let Err(error) = Level::from_scene(id, small(&scene)) else {
+                continue;
+            };
+            let error = error.to_string();
+            if !is_excepted(&error) {
+                let was_good = Level::from_scene(id, small(&before)).is_ok();
+                panic!("{round}, {id}: {error} (before: {was_good})\n{edits:#?}");
+            }
+            break;
+        }
+    }
+    assert!(checks > 1500, "{checks} checks");
+}
+
+#[test]
+fn hostile_numbers_and_items_change_nothing_or_stay_in_range() {
+    let odd = [
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::MAX,
+        f32::MIN_POSITIVE,
+        -0.0,
+        -1e30,
+        1e10,
+    ];
+    let mut random = fastrand::Rng::with_seed(1);
+    for (id, start) in starts().into_iter().step_by(4) {
+        let start = small(&start);
+        let mut chosen = items(&start);
+        chosen.extend([
+            Item::Body(999),
+            Item::Joint(usize::MAX),
+            Item::Basket(7),
+            Item::Hand(99),
+        ]);
+        for _ in 0..12 {
+            let mut number = || *random.choice(&odd).unwrap();
+            let mut any = || Vec3::new(number(), number(), number());
+            let mut scene = start.clone();
+            let [a, b, c] = [any(), any(), any()];
+            translate(&mut scene, &chosen, a);
+            stretch(&mut scene, &chosen, a, b);
+            let chosen = rotate(&mut scene, &chosen, c, a, b.x);
+            let clip = copy(&scene, &chosen);
+            paste(&mut scene, &clip, b);
+            for kind in Kind::ALL {
+                add(&mut scene, kind, a);
+            }
+            snapped(a, b.x);
+            aligned(&scene, &chosen, a, b.x);
+            let places = items(&scene)
+                .into_iter()
+                .filter_map(|item| bounds(&scene, item));
+            for [low, high] in places {
+                assert!(low.is_finite() && high.is_finite() && low.abs().max_element() < 2000.0);
+            }
+            if let Err(error) = Level::from_scene(id, scene) {
+                assert!(is_excepted(&error.to_string()), "{id}: {error}");
+            }
+        }
+    }
+}
+
+fn hull(places: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
+    let boxes = places.map(|place| [place, place]);
+    boxes
+        .reduce(|[low, high], [place, _]| [low.min(place), high.max(place)])
+        .unwrap()
+}
+
+fn nodes_of<D: Dim>(world: &World<D>) -> Vec<Vec<Vec3>> {
+    let bodies = world.soft_bodies();
+    let nodes = bodies.map(|(_, body)| {
+        let nodes = body.mesh().nodes();
+        nodes
+            .map(|(id, _)| body.node_state(id).0.to_vec3())
+            .collect()
+    });
+    nodes.collect()
+}
+
+/// Boxes around the rigid bodies of a world, as the engine has them.
+fn rigid_boxes<D: Dim>(world: &World<D>) -> Vec<[Vec3; 2]> {
+    let bodies = world.rigid_bodies();
+    bodies
+        .map(|(_, body)| body.shape().bounds().map(DimVector::to_vec3))
+        .collect()
+}
+
+fn check_bounds<D: Dim>(id: &str, scene: &Scene) {
+    let world = scene.build::<D>().unwrap();
+    for (index, nodes) in nodes_of(&world).into_iter().enumerate() {
+        let [low, high] = bounds(scene, Item::Body(index)).unwrap();
+        let [inner_low, inner_high] = hull(nodes.into_iter());
+        let text = &scene.body[index];
+        let voxel = super::bounds::grid_size(scene, text).voxel;
+        assert!(
+            (low - voxel).cmple(inner_low).all() && (high + voxel).cmpge(inner_high).all(),
+            "{id}"
+        );
+        if text.shape == Some(Form::Box) && text.part.is_empty() {
+            let apart = (low - inner_low).abs().max((high - inner_high).abs());
+            assert!(apart.max_element() < 1e-4, "{id}, body {index}: {apart}");
+        }
+    }
+    let lists = (0..scene.obstacle.len()).map(Item::Obstacle);
+    let lists = lists.chain((0..scene.hand.len()).map(Item::Hand));
+    let lists = lists.chain((0..scene.rigid_body.len()).map(Item::RigidBody));
+    for (item, [low, high]) in lists.zip(rigid_boxes(&world)) {
+        match bounds(scene, item) {
+            None => assert!(
+                !low.is_finite() || low.abs().max_element() > 1e30,
+                "{id}, {item:?}"
+            ),
+            Some([own_low, own_high]) => {
+                let apart = (low - own_low).abs().max((high - own_high).abs());
+                assert!(apart.max_element() < 1e-4, "{id}, {item:?}: {apart}");
+            }
+        }
+    }
+}
+
+#[test]
+fn bounds_are_those_of_the_built_world() {
+    for (id, scene) in starts() {
+        let mut scene = if id == "cat" { scene } else { small(&scene) };
+        // Rotated bodies have larger boxes.
+        for _ in 0..2 {
+            match scene.dim {
+                2 => check_bounds::<Dim2>(id, &scene),
+                _ => check_bounds::<Dim3>(id, &scene),
+            }
+            let all = items(&scene);
+            rotate(&mut scene, &all, Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0), 0.4);
+        }
+    }
+}
+
+fn check_motion<D: Dim>(id: &str, before: &Scene, after: &Scene, map: &dyn Fn(Vec3) -> Vec3) {
+    let worlds = [before, after].map(|scene| scene.build::<D>().unwrap());
+    let [old, new] = worlds.each_ref().map(nodes_of);
+    for (index, (old, new)) in old.into_iter().zip(new).enumerate() {
+        assert_eq!(old.len(), new.len(), "{id}, body {index}");
+        for (old, new) in old.into_iter().zip(new) {
+            let apart = map(old).distance(new);
+            assert!(apart < 1e-4, "{id}, body {index}: {old} became {new}");
+        }
+    }
+    let [old, new] = worlds.each_ref().map(|world| {
+        let joints = world
+            .joints()
+            .map(|(joint, _)| world.joint_anchor_positions(joint));
+        joints
+            .map(|found| found.unwrap().unwrap().map(DimVector::to_vec3))
+            .collect::<Vec<_>>()
+    });
+    for (old, new) in old.into_iter().flatten().zip(new.into_iter().flatten()) {
+        // An anchor holds the nodes within a radius. A node at this radius may be held only before or only after.
+        let apart = map(old).distance(new);
+        assert!(apart < 0.03, "{id}, joint: {old} became {new}");
+    }
+}
+
+#[test]
+fn motions_move_every_node_of_the_built_world() {
+    for (id, scene) in starts() {
+        let start = small(&scene);
+        let all = items(&start);
+        let check = |after: &Scene, map: &dyn Fn(Vec3) -> Vec3| match start.dim {
+            2 => check_motion::<Dim2>(id, &start, after, map),
+            _ => check_motion::<Dim3>(id, &start, after, map),
+        };
+        let by = flat(start.dim, Vec3::new(0.125, -0.25, 0.05));
+        let mut moved = start.clone();
+        translate(&mut moved, &all, by);
+        check(&moved, &|place| place + by);
+
+        let about = Vec3::new(0.1, 0.2, 0.0);
+        let axis = if start.dim == 2 {
+            Vec3::Z
+        } else {
+            Vec3::new(1.0, -2.0, 0.5)
+        };
+        let mut turned = start.clone();
+        rotate(&mut turned, &all, about, axis, 0.7);
+        let rotation = Rotation::about(axis, 0.7);
+        check(&turned, &|place| about + rotation.apply(place - about));
+
+        let mut stretched = start.clone();
+        let factors = if start.dim == 2 {
+            Vec3::new(1.25, 1.25, 1.0)
+        } else {
+            Vec3::splat(1.25)
+        };
+        stretch(&mut stretched, &all, about, factors);
+        check(&stretched, &|place| about + (place - about) * factors);
+    }
+}
+
+#[test]
+fn translation_and_its_inverse_restore_the_level() {
+    for (id, start) in starts() {
+        let mut scene = start.clone();
+        for item in items(&start) {
+            translate(&mut scene, &[item], Vec3::new(0.25, 0.125, 0.0));
+            let was_moved = scene != start;
+            translate(&mut scene, &[item], Vec3::new(-0.25, -0.125, 0.0));
+            let bounds_of = |scene: &Scene| bounds(scene, item);
+            if let (Some(old), Some(new)) = (bounds_of(&start), bounds_of(&scene)) {
+                let apart = old[0].distance(new[0]) + old[1].distance(new[1]);
+                assert!(
+                    apart < 1e-4 && was_moved || matches!(item, Item::Joint(_)),
+                    "{id}, {item:?}"
+                );
+            }
+        }
+        // All numbers of these levels have few digits.
+        let all = items(&start);
+        translate(&mut scene, &all, Vec3::ZERO);
+        let texts = [&scene, &start].map(|scene| toml::to_string(scene).unwrap());
+        let differing = texts[0]
+            .lines()
+            .zip(texts[1].lines())
+            .filter(|(a, b)| a != b)
+            .count();
+        assert!(differing <= 4, "{id}: {differing} lines differ");
+    }
+}
+
+#[test]
+fn four_quarter_turns_restore_the_boxes_of_a_level() {
+    for (id, start) in starts() {
+        let mut scene = start.clone();
+        let all = items(&start);
+        for quarter in 0..4 {
+            let same = rotate(&mut scene, &all, Vec3::ZERO, Vec3::Z, FRAC_PI_2);
+            assert_eq!(same, all, "{id}, {quarter}");
+        }
+        for item in all {
+            let [old, new] = [&start, &scene].map(|scene| bounds(scene, item));
+            assert_eq!(old.is_some(), new.is_some(), "{id}, {item:?}");
+            if let (Some(old), Some(new)) = (old, new) {
+                let apart = old[0].distance(new[0]) + old[1].distance(new[1]);
+                assert!(apart < 1e-3, "{id}, {item:?}: {old:?} became {new:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn leaning_box_becomes_a_rigid_body_that_keeps_its_joints() {
+    let mut scene = start_of("ducklings").2;
+    let named = scene.joint[0].anchors[1].obstacle.unwrap();
+    assert_eq!(scene.joint[0].anchors[1].obstacle, Some(5));
+    let chosen = [Item::Obstacle(4), Item::Obstacle(0), Item::Hand(0)];
+    let (rigid, obstacles) = (scene.rigid_body.len(), scene.obstacle.len());
+    let half = scene.obstacle[named - 1].boxed.clone().unwrap().half;
+    let new = rotate(&mut scene, &chosen, Vec3::ZERO, Vec3::Y, 0.3);
+    assert_eq!(
+        new,
+        [
+            Item::RigidBody(rigid + 1),
+            Item::RigidBody(rigid),
+            Item::Hand(0)
+        ]
+    );
+    assert_eq!(scene.obstacle.len(), obstacles - 2);
+    let anchor = &scene.joint[0].anchors[1];
+    assert_eq!(
+        (anchor.obstacle, anchor.rigid_body),
+        (None, Some(rigid + 2))
+    );
+    assert_eq!(
+        scene.rigid_body[rigid + 1].boxed.as_ref().unwrap().half,
+        half
+    );
+    assert_eq!(
+        scene.rigid_body[rigid + 1].rotation_vector,
+        Some([0.0, 0.3, 0.0])
+    );
+    Level::from_scene("ducklings", small(&scene)).unwrap();
+}
+
+#[test]
+fn moved_hand_takes_its_parts_knives_and_the_hint_along() {
+    let mut scene = start_of("cake").2;
+    let (edge, hint) = (
+        scene.knife[0].edge,
+        scene.game.as_ref().unwrap().hint.clone(),
+    );
+    let by = Vec3::new(0.1, 0.1, 0.0);
+    translate(&mut scene, &[Item::Hand(0), Item::Knife(0)], by);
+    for (old, new) in edge.into_iter().zip(scene.knife[0].edge) {
+        assert!(
+            (Vec3::from(old) + by).distance(Vec3::from(new)) < 1e-5,
+            "it moves once"
+        );
+    }
+    let moved = &scene.game.as_ref().unwrap().hint;
+    assert!((moved[0][1] - hint[0][1] - 0.1).abs() < 1e-5 && moved[1..] == hint[1..]);
+    let mut scene = start_of("spoon-race").2;
+    let before = scene.hand.clone();
+    translate(&mut scene, &[Item::Hand(0)], by);
+    for (index, (old, new)) in before.iter().zip(&scene.hand).enumerate() {
+        let moves = index == 0 || old.follows == Some(1);
+        let apart = Vec3::from(new.target(0.0)).distance(Vec3::from(old.target(0.0)));
+        assert_eq!(apart > 0.05, moves, "{old:?}");
+    }
+}
+
+/// Texts of the things that a joint or a knife holds to, which tell whether its numbers are right after others change.
+fn held_by(scene: &Scene, item: Item) -> Vec<String> {
+    let text_of = |holder: Option<Item>| match holder {
+        None => "a point".to_owned(),
+        Some(Item::Body(index)) => format!("{:?}", scene.body[index]),
+        Some(Item::Obstacle(index)) => {
+            let text = &scene.obstacle[index];
+            format!("{:?} {:?} {:?}", text.boxed, text.capsule, text.ball)
+        }
+        Some(Item::Hand(index)) => format!("{:?}", scene.hand[index].path),
+        Some(Item::RigidBody(index)) => format!("{:?}", scene.rigid_body[index]),
+        Some(item) => panic!("{item:?} holds nothing"),
+    };
+    match item {
+        Item::Joint(index) => scene.joint[index]
+            .anchors
+            .iter()
+            .map(|anchor| text_of(holder_of_anchor(anchor)))
+            .collect(),
+        Item::Knife(index) => vec![text_of(holder_of_knife(&scene.knife[index]))],
+        _ => Vec::new(),
+    }
+}
+
+#[test]
+fn removal_keeps_what_all_numbers_name() {
+    let mut random = fastrand::Rng::with_seed(2);
+    for (id, start) in starts() {
+        for _ in 0..20 {
+            let mut scene = start.clone();
+            let all = items(&start);
+            let chosen: Vec<Item> = (0..3).map(|_| *random.choice(&all).unwrap()).collect();
+            let Removed {
+                removed, refused, ..
+            } = remove(&mut scene, &chosen);
+            assert!(
+                chosen
+                    .iter()
+                    .all(|item| removed.contains(item) || refused.contains(item))
+            );
+            assert_eq!(items(&scene).len(), all.len() - removed.len(), "{id}");
+            let ties = |scene: &Scene| -> Vec<Vec<String>> {
+                let all = items(scene).into_iter();
+                all.map(|item| held_by(scene, item))
+                    .filter(|held| !held.is_empty())
+                    .collect()
+            };
+            let left = all.iter().filter(|item| !removed.contains(item));
+            let expected = left
+                .map(|item| held_by(&start, *item))
+                .filter(|held| !held.is_empty());
+            assert_eq!(
+                ties(&scene),
+                expected.collect::<Vec<_>>(),
+                "{id}, {chosen:?}"
+            );
+            check_switches_and_bodies(id, &start, &scene, &removed);
+        }
+    }
+}
+
+/// Checks that switches and rules name what they named before.
+fn check_switches_and_bodies(id: &str, start: &Scene, scene: &Scene, removed: &[Item]) {
+    let switch = |scene: &Scene, number: Option<usize>| {
+        number.map(|number| {
+            let text = &scene.switch[number - 1];
+            (text.boxed.clone(), text.ball.clone())
+        })
+    };
+    let obstacles =
+        (0..start.obstacle.len()).filter(|index| !removed.contains(&Item::Obstacle(*index)));
+    for (old, new) in obstacles.zip(&scene.obstacle) {
+        let old = &start.obstacle[old];
+        let stays = old
+            .switch
+            .filter(|number| !removed.contains(&Item::Switch(number - 1)));
+        assert_eq!(switch(start, stays), switch(scene, new.switch), "{id}");
+    }
+    let named = |scene: &Scene, numbers: &[usize]| -> Vec<BodyText> {
+        numbers
+            .iter()
+            .map(|number| scene.body[number - 1].clone())
+            .collect()
+    };
+    let [old, new] = [start, scene].map(|scene| scene.game.as_ref().unwrap());
+    let kept = |numbers: &[usize]| -> Vec<usize> {
+        let numbers = numbers.iter().copied();
+        numbers
+            .filter(|number| !removed.contains(&Item::Body(number - 1)))
+            .collect()
+    };
+    assert_eq!(
+        named(start, &kept(&old.bodies)),
+        named(scene, &new.bodies),
+        "{id}"
+    );
+    let pairs = [(&old.require, &new.require)];
+    for (old, new) in pairs {
+        if let (Some(old), Some(new)) = (old, new) {
+            assert_eq!(
+                named(start, &kept(&old.whole)),
+                named(scene, &new.whole),
+                "{id}"
+            );
+        }
+    }
+}
+
+#[test]
+fn removal_refuses_the_last_body_and_hand_and_drops_impossible_goals() {
+    for (id, start) in starts() {
+        let mut scene = start.clone();
+        let result = remove(&mut scene, &items(&start));
+        assert_eq!(result.refused, [Item::Body(0), Item::Hand(0)], "{id}");
+        assert_eq!(
+            (scene.body.len(), scene.joint.len(), scene.obstacle.len()),
+            (1, 0, 0),
+            "{id}"
+        );
+        Level::from_scene(id, small(&scene)).unwrap();
+        let old = start.game.as_ref().unwrap();
+        let about_joints = old.wish.iter().filter(|wish| wish.joints.is_some());
+        for wish in about_joints {
+            assert!(
+                result.dropped.contains(&Dropped::Goal(wish.clone())),
+                "{id}: {wish:?}"
+            );
+        }
+        assert_eq!(
+            !old.routes.is_empty(),
+            result
+                .dropped
+                .contains(&Dropped::Routes(old.routes.clone())),
+            "{id}"
+        );
+    }
+}
+
+#[test]
+fn removal_of_a_switch_brings_its_obstacles_to_rest() {
+    let mut scene = start_of("dumbwaiter").2;
+    let lift = scene
+        .obstacle
+        .iter()
+        .position(|text| text.switch.is_some())
+        .unwrap();
+    remove(&mut scene, &[Item::Switch(0)]);
+    assert!(!scene.obstacle[lift].moves() && scene.obstacle[lift].switch.is_none());
+    Level::from_scene("dumbwaiter", small(&scene)).unwrap();
+}
+
+#[test]
+fn pasted_items_are_the_copied_ones_and_hold_to_each_other() {
+    for (id, start) in starts() {
+        let all = items(&start);
+        let clip = copy(&start, &all);
+        let mut scene = start.clone();
+        let by = flat(start.dim, Vec3::new(0.0625, 0.03125, 0.0));
+        let new = paste(&mut scene, &clip, by);
+        for item in &new {
+            assert!(
+                !all.contains(item) || matches!(item, Item::Basket(_)),
+                "{id}, {item:?}"
+            );
+        }
+        assert_eq!(
+            scene.material, start.material,
+            "{id}: materials are used again"
+        );
+        let leaders = |scene: &Scene| {
+            scene
+                .hand
+                .iter()
+                .filter(|hand| hand.follows.is_none())
+                .count()
+        };
+        assert!(leaders(&scene) <= 2, "{id}");
+        for (index, joint) in scene.joint.iter().enumerate().skip(start.joint.len()) {
+            for anchor in &joint.anchors {
+                let holder = holder_of_anchor(anchor);
+                assert!(
+                    holder.is_none_or(|holder| new.contains(&holder)),
+                    "{id}, joint {index}"
+                );
+            }
+        }
+        for (copied, original) in scene.body[start.body.len()..].iter().zip(&start.body) {
+            let moved = Vec3::from(original.at) + by;
+            assert!(moved.distance(Vec3::from(copied.at)) < 2e-5, "{id}");
+            assert_eq!(
+                BodyText {
+                    at: original.at,
+                    ..copied.clone()
+                },
+                *original,
+                "{id}"
+            );
+        }
+        if let Err(error) = Level::from_scene(id, small(&scene)) {
+            assert!(is_excepted(&error.to_string()), "{id}: {error}");
+        }
+    }
+}
+
+#[test]
+fn pasted_bodies_keep_their_materials_in_another_level() {
+    let starts = starts();
+    for (id, from) in &starts {
+        let bodies: Vec<Item> = (0..from.body.len()).map(Item::Body).collect();
+        let clip = copy(from, &bodies);
+        for (other, to) in starts
+            .iter()
+            .filter(|(_, to)| to.dim == from.dim)
+            .step_by(5)
+        {
+            let mut scene = to.clone();
+            let new = paste(&mut scene, &clip, Vec3::ZERO);
+            let made = new.iter().filter(|item| matches!(item, Item::Body(_)));
+            assert_eq!(made.count(), bodies.len(), "{id} into {other}");
+            for (copied, original) in scene.body[to.body.len()..].iter().zip(&from.body) {
+                let material = |scene: &Scene, body: &BodyText| {
+                    let number = body.material.unwrap_or(1);
+                    scene.material[usize::from(number) - 1].clone()
+                };
+                if original.shape.is_some_and(|form| form != Form::Empty) {
+                    assert_eq!(
+                        material(&scene, copied),
+                        material(from, original),
+                        "{id} into {other}"
+                    );
+                }
+                for (new, old) in copied.part.iter().zip(&original.part) {
+                    let number =
+                        |fill: Option<u8>, paint: Option<u8>| usize::from(fill.or(paint).unwrap());
+                    let [new, old] = [number(new.fill, new.paint), number(old.fill, old.paint)];
+                    assert_eq!(new == 0, old == 0);
+                    if old > 0 {
+                        assert_eq!(
+                            scene.material[new - 1],
+                            from.material[old - 1],
+                            "{id} into {other}"
+                        );
+                    }
+                }
+            }
+        }
+        let other_dim = starts.iter().find(|(_, to)| to.dim != from.dim).unwrap();
+        assert_eq!(paste(&mut other_dim.1.clone(), &clip, Vec3::ZERO), []);
+    }
+}
+
+#[test]
+fn pasted_model_has_its_materials_in_a_level_with_others() {
+    let (_, _, from) = start_of("pudding");
+    let (_, _, mut to) = start_of("sandbox-3d");
+    let before = to.body.len();
+    paste(&mut to, &copy(&from, &[Item::Body(0)]), Vec3::ZERO);
+    let tint_free = |scene: &Scene, index: usize| {
+        let mut alone = scene.clone();
+        alone.body = vec![scene.body[index].clone()];
+        let world = alone.build::<Dim3>().unwrap();
+        let grid = world.soft_bodies().next().unwrap().1.grid().clone();
+        let voxels = grid.voxels().map(|voxel| grid.material(voxel));
+        let voxels = voxels.map(|number| match number {
+            0 => None,
+            _ => Some(scene.material[usize::from(number) - 1].clone()),
+        });
+        voxels.collect::<Vec<_>>()
+    };
+    assert!(tint_free(&from, 0) == tint_free(&to, before));
+}
+
+#[test]
+fn everything_can_be_added_to_every_level() {
+    let mut random = fastrand::Rng::with_seed(4);
+    for (id, start) in starts() {
+        let start = small(&start);
+        let mut scene = start.clone();
+        for kind in Kind::ALL {
+            let old = items(&scene);
+            let at = vector(&mut random, 1.0);
+            let before = scene.clone();
+            let new = add(&mut scene, kind, at);
+            assert!(new.iter().all(|item| item.is_in(&scene)), "{id}, {kind:?}");
+            if new.is_empty() {
+                assert!(
+                    kind == Kind::SecondHand && scene == before,
+                    "{id}, {kind:?}"
+                );
+            }
+            assert_eq!(items(&scene).len(), old.len() + new.len(), "{id}, {kind:?}");
+        }
+        let checked = Level::from_scene(id, small(&scene));
+        assert!(
+            checked.as_ref().is_ok_and(Level::has_basket),
+            "{id}: {:?}",
+            checked.err()
+        );
+    }
+}
+
+#[test]
+fn snapped_positions_are_multiples_of_the_grid() {
+    let place = Vec3::new(0.124, -0.377, 3.0);
+    assert_eq!(snapped(place, 0.05), Vec3::new(0.1, -0.4, 3.0));
+    assert_eq!(snapped(place, 0.0), place);
+    assert_eq!(snapped(place, f32::NAN), place);
+}
+
+#[test]
+fn aligned_items_touch_lines_of_others() {
+    let mut scene = start_of("classic").2;
+    scene.body[0].width = 0.97;
+    let [low, high] = bounds(&scene, Item::Body(0)).unwrap();
+    // The floor is at −1, and the hands start at 0 and 0.7.
+    let by = Vec3::new(0.0, -1.0 - low.y + 0.01, 0.0);
+    let (moved, guides) = aligned(&scene, &[Item::Body(0)], by, 0.03);
+    assert!((low.y + moved.y + 1.0).abs() < 1e-5, "{moved}");
+    assert!(guides.contains(&Guide { axis: 1, at: -1.0 }), "{guides:?}");
+    let (far, none) = aligned(&scene, &[Item::Body(0)], Vec3::new(0.0, 0.26, 0.0), 0.0001);
+    assert_eq!(
+        (far, none.iter().any(|guide| guide.axis == 1)),
+        (Vec3::new(0.0, 0.26, 0.0), false)
+    );
+    assert!(high.x > low.x);
+}
+
+#[test]
+fn angles_of_rotated_bodies_add_up() {
+    let mut scene = start_of("classic").2;
+    for _ in 0..7 {
+        rotate(&mut scene, &[Item::Body(0)], Vec3::ZERO, Vec3::Z, 1.0);
+    }
+    let vector = scene.body[0].rotation_vector.unwrap();
+    assert!((vector[2] - (7.0 - 2.0 * PI)).abs() < 1e-4 && vector[..2] == [0.0; 2]);
+    rotate(&mut scene, &[Item::Body(0)], Vec3::ZERO, Vec3::NEG_Z, 7.0);
+    assert_eq!(scene.body[0].rotation_vector, None);
+    let mut scene = start_of("classic-3d").2;
+    let (x, y) = (Vec3::X * 0.5, Vec3::Y * 0.7);
+    rotate(&mut scene, &[Item::Body(0)], Vec3::ZERO, Vec3::X, 0.5);
+    rotate(&mut scene, &[Item::Body(0)], Vec3::ZERO, Vec3::Y, 0.7);
+    let vector = Vec3::from(scene.body[0].rotation_vector.unwrap());
+    let made = Rotation::about(vector, vector.length());
+    for axis in Vec3::AXES {
+        let expected = Rotation::about(y, 0.7).apply(Rotation::about(x, 0.5).apply(axis));
+        assert!(made.apply(axis).distance(expected) < 1e-5);
+    }
+}
