@@ -4,6 +4,7 @@
 mod bout;
 mod controls;
 mod drawing;
+mod editing;
 mod ended;
 mod ending;
 mod forces;
@@ -11,9 +12,11 @@ mod heard;
 mod keep;
 mod lesson;
 mod links;
+mod making;
 mod notices;
 mod public;
 mod screen;
+mod sharing;
 mod shelf;
 mod teach;
 mod time;
@@ -28,16 +31,19 @@ use crate::platform::{Damage, Dialog, DialogResult, Files, OpenRequest, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::words::Words;
+use crate::words::{MakingWords, Words};
 use app_shell::{Clock, Forces, Pads, Theme};
 pub use bout::CurrentRound;
 pub use controls::{Controls, ScreenButton};
 use drawing::DrawingWatch;
+pub use editing::{Drag, Editor, EditorPart, GRID};
 pub use ending::Ending;
 use fuwafuwa::DEFAULT_TICK;
+pub use making::{Cursor, DrawingTool, Maker, WIDTHS};
 pub use notices::{Notice, Notices};
 pub use public::{EndedRound, PublicMode};
 pub use screen::{Screen, Screens};
+pub use sharing::{MOST_NAME, credits};
 pub use shelf::{RoundDetails, SavedRound, SavedRounds};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -65,10 +71,14 @@ pub struct Game {
     pub chosen: usize,
     /// Returns today's date, in the form 2026-11-28. `None` = there is no level of the day.
     pub calendar: Option<fn() -> String>,
+    /// Level that the player removed last, and its text.
+    removed: Option<(Arc<Level>, String)>,
     /// Level of the day, which is also in [`Self::levels`].
     day: Option<Arc<Level>>,
     /// Progress of the ending.
     pub ending: Ending,
+    /// Drawing and level in the making.
+    pub maker: Maker,
     /// Current round.
     pub bout: CurrentRound,
     /// Input devices and players.
@@ -117,11 +127,13 @@ impl Game {
             records: records.by_name(levels.iter().map(Arc::as_ref)),
             settings,
             files,
+            maker: Maker::default(),
             bout: CurrentRound::new(attract(0)),
             controls: Controls::new(pads),
             levels,
             chosen: 0,
             calendar: None,
+            removed: None,
             day: None,
             ending: Ending::default(),
             dialog: Dialog::default(),
@@ -168,6 +180,11 @@ impl Game {
     /// Returns the texts in the language of the player.
     pub fn words(&self) -> &'static Words {
         self.settings.language.words()
+    }
+
+    /// Returns the texts about making in the language of the player.
+    pub fn making(&self) -> &'static MakingWords {
+        self.settings.language.making()
     }
 
     /// Returns the colour theme.
@@ -252,6 +269,7 @@ impl Game {
                 }
             }
             Screen::Title if self.bout.session.is_played() => self.attract(),
+            Screen::Editor => self.show_draft(),
             Screen::Replays => self.shelf.refresh(&self.files),
             _ => {}
         }
@@ -485,6 +503,9 @@ impl Game {
     }
 
     fn offer(&mut self, mut level: Level) {
+        if self.screen() == Screen::Paper && self.draw_from(&level) {
+            return;
+        }
         let notes = level.scene().notes().iter();
         let notes: Vec<String> = notes.map(self.words().import_note).collect();
         let known = self.levels.iter().position(|known| **known == level);
@@ -619,10 +640,21 @@ impl Game {
 
     /// Whether the round is visible, even if dimmed. A hidden round stands still and is silent.
     pub fn is_seen(&self) -> bool {
-        use Screen::{Ending, Forces, Levels, Licences, Replays, Settings, Toolbox};
+        use Screen::{
+            Ending, Finish, Forces, Levels, Licences, Paper, Properties, Replays, Settings, Toolbox,
+        };
         !matches!(
             self.screen(),
-            Levels | Ending | Replays | Settings | Forces | Licences | Toolbox
+            Levels
+                | Ending
+                | Replays
+                | Settings
+                | Forces
+                | Licences
+                | Toolbox
+                | Paper
+                | Finish
+                | Properties
         )
     }
 

@@ -11,6 +11,7 @@
 //! - [`platform`]: files, sound and dialogs
 //! - [`session`]: playing a round or watching a replay in real time
 //! - [`haptics`]: force feedback and rumble
+//! - [`qr`]: QR codes of links
 //! - [`attract`]: the recorded rounds behind the title screen
 //! - [`look`]: rendering of rounds
 //! - [`film`]: films and photos of rounds
@@ -45,6 +46,7 @@ pub mod journey;
 pub mod licences;
 pub mod look;
 pub mod platform;
+pub mod qr;
 pub mod records;
 pub mod screens;
 pub mod session;

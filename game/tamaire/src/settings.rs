@@ -63,6 +63,8 @@ pub struct Settings {
     pub text_size: f32,
     /// Picture quality of the world.
     pub quality: Quality,
+    /// Name under which the player makes levels; may be empty.
+    pub maker_name: String,
     /// Bindings of keys and buttons.
     pub bindings: Bindings,
 }
@@ -135,6 +137,7 @@ impl Default for Settings {
             colour_safe: false,
             text_size: 1.0,
             quality: Quality::default(),
+            maker_name: String::new(),
             bindings: Bindings::default(),
         }
     }

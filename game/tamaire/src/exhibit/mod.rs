@@ -4,7 +4,6 @@
 //!
 //! - [`config`]: configuration by the operator
 //! - [`presence`]: detection of visitors
-//! - [`home`]: QR code of a round
 //! - [`staff`]: staff access
 //! - [`health`]: frame times
 //! - `visit`: a visit and its rounds
@@ -12,7 +11,6 @@
 
 pub mod config;
 pub mod health;
-pub mod home;
 pub mod memory;
 pub mod presence;
 pub mod staff;
@@ -20,6 +18,7 @@ mod visit;
 
 use crate::game::{Game, Screen};
 use crate::platform::TextFile;
+use crate::qr::Code;
 use crate::records::Records;
 use app_shell::Clock;
 use config::{Config, ConfigChange, Seconds, Times};
@@ -78,7 +77,7 @@ pub struct Stand {
     /// Attention of the visitor, detected from the input.
     pub attention: Attention,
     /// QR code of the last round, if it was won.
-    home: Option<home::Code>,
+    home: Option<Code>,
     /// Hidden entrance to the staff pages.
     pub entrance: Entrance,
     /// Frame times.
@@ -267,12 +266,12 @@ impl Stand {
 
     /// QR code of the won round. `None` for the first seconds of the result, so that the code does not cover
     /// the body in the basket.
-    pub fn to_take_home(&self) -> Option<&home::Code> {
+    pub fn to_take_home(&self) -> Option<&Code> {
         self.home.as_ref().filter(|_| self.result_since > BEAMING)
     }
 
     /// QR code of the won round, also before it appears.
-    pub fn coming_code(&self) -> Option<&home::Code> {
+    pub fn coming_code(&self) -> Option<&Code> {
         self.home.as_ref()
     }
 
@@ -381,7 +380,7 @@ impl Stand {
         for ended in ended.into_iter().flatten() {
             if ended.progress.outcome.is_some() {
                 let page = self.config.take_home.page.as_ref();
-                self.home = page.and_then(|page| home::Code::of(&page.0, &ended.replay));
+                self.home = page.and_then(|page| Code::of_round(&page.0, &ended.replay));
             }
             if let Some(visit) = &mut self.visit {
                 self.memory.note_visit(visit, &self.config);

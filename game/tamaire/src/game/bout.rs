@@ -103,6 +103,13 @@ impl CurrentRound {
         self.cheered = 0.0;
     }
 
+    /// Shows a room that nobody plays, with the camera and the view as they are.
+    pub(super) fn show(&mut self, session: Session) {
+        let view = self.view;
+        self.begin(session, 0.0);
+        self.view = view;
+    }
+
     /// Whether the player has pushed but not won, and starts the same level again with `next`.
     fn is_given_up_for(&self, next: &Session) -> bool {
         let (before, after) = (self.round(), next.round());

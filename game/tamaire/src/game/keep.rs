@@ -3,7 +3,7 @@
 use super::{Game, Screen};
 use crate::platform::{Damage, Entry, Kind, Location, StorageEvent};
 use std::sync::Arc;
-use tamaire_play::{Replay, ReplayError};
+use tamaire_play::{Level, Replay, ReplayError};
 
 impl Game {
     /// Schedules the settings to be saved once they no longer change. If writing fails, a message is shown,
@@ -45,9 +45,27 @@ impl Game {
         Ok(())
     }
 
-    /// Removes a level from the list and deletes its file. The level must not be built in. Its records stay.
+    /// Returns the level that was removed last.
+    pub fn removed_level(&self) -> Option<&Level> {
+        self.removed.as_ref().map(|(level, _)| level.as_ref())
+    }
+
+    /// Brings back the level that was removed last.
+    pub fn bring_back(&mut self) {
+        if let Some((level, text)) = self.removed.take() {
+            self.files.keep_level_text(&level.id, text);
+            self.levels.retain(|known| known.id != level.id);
+            self.levels.push(level);
+        }
+    }
+
+    /// Removes a level from the list and deletes its file. The level must not be built in. Its records stay, and
+    /// [`Game::bring_back`] undoes it.
     pub fn take_out(&mut self, index: usize) {
         let level = self.levels.remove(index);
+        let text = self.text_of(&level);
+        let text = text.or_else(|| level.text_to_keep().ok());
+        self.removed = text.map(|text| (level.clone(), text));
         self.files.remove_level(&level.id);
         if self.chosen >= index {
             self.chosen = self.chosen.saturating_sub(1);

@@ -11,6 +11,14 @@ pub enum Screen {
     Ending,
     /// Explanation of how two players play.
     Together,
+    /// Paper and block, on which players draw bodies.
+    Paper,
+    /// Editor of levels.
+    Editor,
+    /// Properties of a thing in the editor, or of its level.
+    Properties,
+    /// Page on which an edited level is checked, kept and sent.
+    Finish,
     /// Saved rounds.
     Replays,
     /// The round.
@@ -39,7 +47,10 @@ impl Screen {
             Title => false,
             Ending => matches!(other, Title | Levels),
             Levels | Together | Replays | Offered => other == Title,
-            Play => matches!(other, Title | Levels | Replays | Offered),
+            Paper => matches!(other, Title | Levels | Editor),
+            Editor => matches!(other, Title | Levels | Offered),
+            Properties | Finish => other == Editor,
+            Play => matches!(other, Title | Levels | Paper | Editor | Replays | Offered),
             Paused | Result => other == Play,
             Toolbox => other == Paused,
             Settings => matches!(other, Title | Paused),
@@ -108,6 +119,7 @@ mod tests {
             (&[Levels, Play], Levels),
             (&[Levels, Play, Result, Ending], Levels),
             (&[Replays, Play], Replays),
+            (&[Paper, Play], Paper),
             (&[Play], Title),
             // A file dropped onto the settings is played at once.
             (&[Levels, Play, Paused, Settings, Play], Levels),

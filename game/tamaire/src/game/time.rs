@@ -17,7 +17,8 @@ impl Game {
         self.time += f64::from(seconds);
         self.notices.pass(seconds);
         let was_winding = self.bout.session.is_winding();
-        let is_paused = self.screen() == Screen::Paused || (self.bout.stepping && !was_winding);
+        let stands = matches!(self.screen(), Screen::Paused | Screen::Editor);
+        let is_paused = stands || (self.bout.stepping && !was_winding);
         let runs = self.is_seen() && !is_paused;
         let is_watched = self.screen() == Screen::Play && !self.bout.session.is_played();
         let watch_speed = if is_watched {
@@ -28,7 +29,10 @@ impl Game {
         let slowed = if self.bout.slow { SLOW } else { 1.0 };
         let pace = slowed * watch_speed * self.settings.speed;
         self.press_tool();
-        if self.wants_rewind() {
+        if let Some(back) = self.homeward(seconds) {
+            self.run_back(back);
+            self.bout.effects.advance(seconds);
+        } else if self.wants_rewind() {
             self.run_back(seconds);
             self.bout.effects.advance(seconds);
         } else if runs {
@@ -241,6 +245,7 @@ impl Game {
             let is_best = is_known && self.records.note(&level, &outcome, rewinds);
             self.ending.is_due |= !was_won && self.has_won_path();
             self.bout.won = Some((outcome, is_best));
+            self.note_test_win();
             self.note_end();
             self.sound.play(Cue::Won(match outcome.route {
                 tamaire_play::Route::Squeeze => tamaire_sound::Route::Squeeze,

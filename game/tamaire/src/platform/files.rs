@@ -224,6 +224,36 @@ impl Files {
         self.writer.write(job, JobResult::Note);
     }
 
+    /// Stores the text of a level under its id, and replaces one with the same id.
+    pub fn keep_level_text(&mut self, id: &str, text: String) {
+        let (storage, id) = (self.storage.clone(), id.to_string());
+        let job = move || {
+            let mut change = |_: Option<&[u8]>| Some(text.clone().into_bytes());
+            storage.change(Kind::Level, &id, &mut change)
+        };
+        self.writer.write(job, JobResult::Note);
+    }
+
+    /// Returns the text of a stored level, as it was written.
+    pub fn level_text(&self, id: &str) -> Option<String> {
+        let bytes = self.storage.read(Kind::Level, id).ok().flatten()?;
+        String::from_utf8(bytes).ok()
+    }
+
+    /// Stores the text of a level, and tells where. In a browser, the player gets it as a file.
+    pub fn save_level(&mut self, id: &str, text: String) {
+        let (storage, id) = (self.storage.clone(), id.to_string());
+        let job = move || {
+            let mut change = |_: Option<&[u8]>| Some(text.clone().into_bytes());
+            storage.change(Kind::Level, &id, &mut change)?;
+            if storage.can_export() {
+                storage.export(Kind::Level, &id)?;
+            }
+            Ok(storage.location(Kind::Level, &id))
+        };
+        self.writer.write(job, JobResult::Replay);
+    }
+
     /// Deletes a stored level. Its records stay.
     pub fn remove_level(&mut self, name: &str) {
         let (storage, name) = (self.storage.clone(), name.to_string());

@@ -1,7 +1,6 @@
 //! Screen for choosing a level.
 
 use super::buttons::pale;
-use super::confirmation::{is_pending, set_pending};
 use super::icons;
 use super::widgets::{dim_background, header_to_open, page, page_rect, words};
 use crate::game::Game;
@@ -33,6 +32,9 @@ const SLIM: f32 = 36.0;
 enum LevelAction {
     Play(usize),
     TakeOut(usize),
+    Change(usize),
+    New(u8),
+    BringBack,
     TellLock(Lock),
     ShowEnding,
 }
@@ -56,11 +58,17 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             let journey = game.journey();
             for section in Section::all() {
                 let places = game.levels_of(section);
-                if places.is_empty() {
+                let can_make = section == Section::Own && game.public.is_none();
+                if places.is_empty() && !can_make {
                     continue;
                 }
                 let lock = game.lock_of(section);
                 heading(ui, game, section, &journey, lock);
+                if can_make {
+                    if let Some(action) = make(ui, game) {
+                        wanted = Some(action);
+                    }
+                }
                 for row in places.chunks(columns) {
                     let shown = ui.horizontal_top(|ui| {
                         let shown = row.iter().map(|&index| {
@@ -79,8 +87,10 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                                         Some(lock) => LevelAction::TellLock(lock),
                                     });
                                 }
-                                if game.is_own(index) && way_out(ui, game, index, wide).clicked() {
-                                    wanted = Some(LevelAction::TakeOut(index));
+                                if game.is_own(index)
+                                    && let Some(action) = own_buttons(ui, game, index, wide)
+                                {
+                                    wanted = Some(action);
                                 }
                                 response.rect
                             });
@@ -107,21 +117,17 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     if back {
         game.blip(Menu::Back);
         game.go_back();
-        set_pending(ui, None);
     }
     let Some(wish) = wanted.filter(|_| !back) else {
         return;
     };
     game.blip(Menu::Confirm);
     match wish {
-        LevelAction::Play(index) => {
-            set_pending(ui, None);
-            game.start(index);
-        }
-        LevelAction::TakeOut(index) if is_pending(ui, &game.levels[index].id) => {
-            game.take_out(index)
-        }
-        LevelAction::TakeOut(index) => set_pending(ui, Some(&game.levels[index].id)),
+        LevelAction::Play(index) => game.start(index),
+        LevelAction::TakeOut(index) => game.take_out(index),
+        LevelAction::Change(index) => game.edit(index),
+        LevelAction::New(dim) => game.edit_blank(dim),
+        LevelAction::BringBack => game.bring_back(),
         LevelAction::ShowEnding => game.show_ending(),
         LevelAction::TellLock(lock) => game.notify(lock_text(game, lock)),
     }
@@ -212,23 +218,51 @@ fn locked_tile(ui: &mut Ui, game: &Game, index: usize, size: Vec2) -> Response {
     response
 }
 
-/// Shows the button that removes a level from the list. A second press confirms the removal.
-fn way_out(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Response {
-    let (level, said) = (&game.levels[index], game.words());
-    let text = match is_pending(ui, &level.id) {
-        true => said.confirm,
-        false => said.remove_level,
-    };
-    let response = plain_button(
-        ui,
-        &game.theme(),
-        text,
-        vec2(wide, SLIM),
-        ButtonStyle::Other,
-    );
-    let name = game.settings.language.of(&level.game().name);
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{text}: {name}")));
-    response
+/// Shows the buttons that make a level, and the one that brings back a removed level.
+fn make(ui: &mut Ui, game: &Game) -> Option<LevelAction> {
+    let (theme, words) = (game.theme(), game.making());
+    let mut wanted = None;
+    let removed = game.removed_level();
+    let bring_back = removed.map(|level| {
+        let name = game.settings.language.of(&level.game().name);
+        (words.bring_back)(name)
+    });
+    ui.horizontal_wrapped(|ui| {
+        let mut press = |text: &str, wide: f32, action: LevelAction| {
+            if button(ui, &theme, text, vec2(wide, 44.0), ButtonStyle::Other).clicked() {
+                wanted = Some(action);
+            }
+        };
+        press(words.new_level, 190.0, LevelAction::New(2));
+        press(words.new_level_3d, 190.0, LevelAction::New(3));
+        if let Some(text) = &bring_back {
+            press(text, 300.0, LevelAction::BringBack);
+        }
+    });
+    wanted
+}
+
+/// Shows the buttons below a level that the player made or added.
+fn own_buttons(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Option<LevelAction> {
+    let name = game.settings.language.of(&game.levels[index].game().name);
+    let (theme, said, words) = (game.theme(), game.words(), game.making());
+    let mut wanted = None;
+    let size = vec2(0.5 * (wide - 8.0), SLIM);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 8.0;
+        for (text, action) in [
+            (words.change, LevelAction::Change(index)),
+            (said.remove_level, LevelAction::TakeOut(index)),
+        ] {
+            let response = plain_button(ui, &theme, text, size, ButtonStyle::Other);
+            let told = format!("{text}: {name}");
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &told));
+            if response.clicked() {
+                wanted = Some(action);
+            }
+        }
+    });
+    wanted
 }
 
 /// Shows a level as a card with thumbnail, name and achievements.

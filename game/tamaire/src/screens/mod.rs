@@ -2,7 +2,9 @@
 
 mod attendant;
 mod buttons;
+mod code;
 mod confirmation;
+mod editor;
 mod ending;
 mod forces;
 mod goals;
@@ -11,6 +13,7 @@ mod hud;
 mod icons;
 mod levels;
 mod licences;
+mod making;
 mod notices;
 mod offered;
 mod offers;
@@ -46,6 +49,10 @@ pub fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         Screen::Together => together::show(game, ui),
         Screen::Levels => levels::show(game, stage, ui),
         Screen::Ending => ending::show(game, stage, ui),
+        Screen::Paper => making::show(game, ui),
+        Screen::Editor => editor::show(game, ui),
+        Screen::Properties => editor::properties(game, ui),
+        Screen::Finish => editor::finish(game, ui),
         Screen::Play => play::show(game, ui),
         Screen::Paused => paused::show(game, ui),
         Screen::Toolbox => toolbox::show(game, ui),

@@ -2,7 +2,7 @@
 
 use super::icons;
 use super::widgets::{Act, card, column, dim_background, menu, perform};
-use crate::game::Game;
+use crate::game::{Game, credits};
 use crate::look::Stage;
 use app_shell::widgets::fitted;
 use egui::{Rect, Sense, Stroke, StrokeKind, Ui, vec2};
@@ -37,6 +37,9 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 .rect_stroke(rect.expand(2.5), 20.0, frame, StrokeKind::Middle);
             let name = game.settings.language.of(&level.game().name);
             line(ui, name, 24.0, theme.ink);
+            for text in credits(&level, game.making()) {
+                line(ui, &text, 17.0, theme.faint);
+            }
             let seconds = replay.seconds();
             let how = match replay.outcome {
                 Some(outcome) => format!("{} {seconds:.1} s", (said.route)(outcome.route)),
@@ -48,15 +51,23 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             }
             line(ui, &how, 19.0, theme.faint);
             ui.add_space(12.0);
-            let options: [(&str, Act); 3] = [
+            let options: [(&str, Act); 4] = [
                 (said.watch, |game| take(game, Game::watch)),
                 (said.race, |game| take(game, Game::race)),
+                (game.making().change_this, change),
                 (said.back, Game::go_back),
             ];
             menu(ui, &theme, BUTTON, &options)
         })
     });
     perform(game, ui, wanted, Game::go_back);
+}
+
+/// Opens the editor with the level of the round.
+fn change(game: &mut Game) {
+    if let Some((_, level)) = game.offered.take() {
+        game.edit_level(&level);
+    }
 }
 
 fn take(game: &mut Game, act: fn(&mut Game, Arc<Replay>) -> Result<(), ReplayError>) {

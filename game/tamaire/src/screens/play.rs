@@ -25,6 +25,15 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     view.centre[1] -= 0.1 * share * view.height();
     let view = beside_cards(game, ui, view, duration);
     let view = above_toys(game, ui, view);
+    let view = match game.screen() {
+        Screen::Editor => {
+            let part = super::editor::room(game, ui);
+            let fitted = view_of_level(&game.bout.camera, part, &level);
+            view.shrunk(fitted.scale / view.scale)
+                .displaced(part.center() - screen.center())
+        }
+        _ => view,
+    };
     game.bout.view = Some(view);
     let theme = game.theme();
     // Until the first level has been won, the hint shows how to push the body into the basket, and again if

@@ -56,7 +56,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             }
             let wishes = &level.game().wish;
             let is_reached = wishes.iter().all(|wish| outcome.fulfils(wish));
-            buttons(ui, &theme, said, is_reached, game.may_show_way())
+            let editor = game.is_test().then_some(game.making().to_editor);
+            buttons(ui, &theme, said, (is_reached, editor), game.may_show_way())
         })
     });
     perform(game, ui, wanted, to_levels);
@@ -165,18 +166,23 @@ fn wishes(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome, wishes: &
 }
 
 /// Shows the buttons of the result and returns the chosen action. The main button leads to the next level if
-/// all goals of the current level are reached; otherwise it restarts the level.
+/// all goals of the current level are reached; otherwise it restarts the level. After a test of a level, it leads to the
+/// editor, whose button has the text `editor`.
 fn buttons(
     ui: &mut Ui,
     theme: &Theme,
     said: &Words,
-    is_reached: bool,
+    (is_reached, editor): (bool, Option<&str>),
     can_show: bool,
 ) -> Option<Act> {
     let mut wanted: Option<Act> = None;
     let width = (2.0 * 200.0 + GAP).min(ui.available_width());
     let again: (&str, Act) = (said.play_again, Game::retry);
-    let next: (&str, Act) = (said.next, Game::start_next);
+    let next: (&str, Act) = match editor {
+        Some(text) => (text, Game::end_test),
+        None => (said.next, Game::start_next),
+    };
+    let is_reached = is_reached || editor.is_some();
     let (main, other) = if is_reached {
         (next, again)
     } else {

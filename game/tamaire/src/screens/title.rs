@@ -34,6 +34,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         draw_name(game, ui, top, 104.0);
         let options = [
             (said.play, Screen::Levels),
+            (game.making().draw, Screen::Paper),
             (said.two_players, Screen::Together),
             (said.replays, Screen::Replays),
             (said.settings, Screen::Settings),

@@ -218,7 +218,14 @@ fn colour(game: &Game, stuff: Stuff) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }
 
-fn draw_form(painter: &Painter, theme: &Theme, form: Form, at: Pos2, scale: f32, fill: Color32) {
+pub(super) fn draw_form(
+    painter: &Painter,
+    theme: &Theme,
+    form: Form,
+    at: Pos2,
+    scale: f32,
+    fill: Color32,
+) {
     let line = Stroke::new(1.5, theme.ink);
     let outline = |radius: &dyn Fn(f32) -> Vec2| {
         let points = (0..48).map(|k| at + scale * radius(TAU * k as f32 / 48.0));

@@ -2,10 +2,12 @@
 
 mod en;
 mod ja;
+mod making;
 mod said;
 #[cfg(not(target_family = "wasm"))]
 mod stand;
 
+pub use making::MakingWords;
 pub use said::Words;
 #[cfg(not(target_family = "wasm"))]
 pub use stand::StandWords;

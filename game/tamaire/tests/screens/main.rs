@@ -8,6 +8,7 @@ mod help;
 mod hostile;
 mod kept;
 mod links;
+mod making;
 mod models;
 mod own;
 mod pads;

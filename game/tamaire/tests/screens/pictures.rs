@@ -45,7 +45,7 @@ fn picture(window: &mut Window, name: &str) {
 }
 
 /// Takes a picture in each language.
-fn pictures(window: &mut Window, name: &str) {
+pub fn pictures(window: &mut Window, name: &str) {
     for (language, tag) in [(Language::English, "en"), (Language::Japanese, "ja")] {
         game(window).settings.language = language;
         // A new layout takes one frame to appear and one to be measured.

@@ -1,7 +1,6 @@
 //! Screens of a public stand for visitors and staff.
 
 mod choice;
-mod code;
 mod door;
 mod language;
 mod leaving;

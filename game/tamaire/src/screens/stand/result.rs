@@ -1,13 +1,14 @@
 //! Result of a round at the stand: play again, try the other route, and a code to take the round home.
 
+use super::super::code;
 use super::super::play;
 use super::super::result::{headline, line, numbers, other};
 use super::super::widgets::{card, column_beside, dim_background, focus_first};
-use super::code;
 use super::language::above;
 use crate::exhibit::Stand;
 use crate::game::{Game, Screen};
-use app_shell::widgets::{ButtonStyle, button};
+use crate::qr::Code;
+use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 use tamaire_play::Route;
 use tamaire_sound::Menu;
@@ -83,7 +84,7 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     play::note_free_part(ui, between(screen, code, card_rect));
     if let Some(home) = stand.to_take_home() {
         ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
-            code::show(ui, game, home, most)
+            to_take_home(ui, game, home, most)
         });
     }
     if let Some(wish) = wish.filter(|_| stand.is_settled()) {
@@ -93,6 +94,28 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
             ResultAction::Another => stand.choose_again(game),
         }
     }
+}
+
+/// Minimum width of a module of a code [px]; phones cannot read smaller ones from a screen.
+const LEAST: f32 = 3.0;
+
+/// Shows a code on a card with its purpose. `most` is the maximum side length [points].
+fn to_take_home(ui: &mut Ui, game: &Game, home: &Code, most: f32) {
+    if code::pixels(ui, home, most) < LEAST {
+        return;
+    }
+    let (theme, said) = (game.theme(), game.settings.language.at_stand());
+    card(ui, &theme, |ui| {
+        ui.spacing_mut().item_spacing.y = 6.0;
+        ui.vertical_centered(|ui| {
+            ui.set_max_width(most);
+            let headline = fitted(ui.painter(), said.take_home, 27.0, most, theme.accent);
+            ui.label(headline);
+            code::draw(ui, home, most);
+            let how = fitted(ui.painter(), said.scan, 20.0, most, theme.faint);
+            ui.label(how);
+        });
+    });
 }
 
 /// Returns the maximum side length of the QR code [points].

@@ -1,8 +1,8 @@
-//! QR code of a round, which a visitor opens on a phone.
+//! QR codes of links, which are opened on a phone.
 
 use qrcode::{Color, EcLevel, QrCode};
-use tamaire_play::Replay;
 use tamaire_play::link::address;
+use tamaire_play::{Level, Replay};
 
 /// A QR code.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,8 +18,17 @@ pub struct Code {
 impl Code {
     /// Creates the code of the address at which `page` shows a round. `None` if the address is too long for a
     /// QR code.
-    pub fn of(page: &str, replay: &Replay) -> Option<Self> {
-        let address = address(page, &replay.code().ok()?);
+    pub fn of_round(page: &str, replay: &Replay) -> Option<Self> {
+        Self::of_address(address(page, &replay.code().ok()?))
+    }
+
+    /// Creates the code of the address at which `page` opens a level. `None` if the address is too long for a QR
+    /// code.
+    pub fn of_level(page: &str, level: &Level) -> Option<Self> {
+        Self::of_address(address(page, &level.code().ok()?))
+    }
+
+    fn of_address(address: String) -> Option<Self> {
         // A code on a screen cannot be stained, so the lowest level of error correction is enough.
         let code = QrCode::with_error_correction_level(&address, EcLevel::L).ok()?;
         let dark = code.to_colors().into_iter();
@@ -49,7 +58,7 @@ mod tests {
         const QUIET: usize = 4;
         let replay = played(60);
         assert!(replay.outcome.is_some());
-        let code = Code::of("https://example.org/tamaire/", &replay).unwrap();
+        let code = Code::of_round("https://example.org/tamaire/", &replay).unwrap();
         let side = PIXELS * (code.side + 2 * QUIET);
         let mut image = rqrr::PreparedImage::prepare_from_greyscale(side, side, |x, y| {
             let [x, y] = [x, y].map(|pixel| (pixel / PIXELS).wrapping_sub(QUIET));
@@ -70,6 +79,6 @@ mod tests {
     #[test]
     fn code_is_none_for_too_long_address() {
         let page = format!("https://example.org/{}", "x".repeat(3000));
-        assert!(Code::of(&page, &played(1)).is_none());
+        assert!(Code::of_round(&page, &played(1)).is_none());
     }
 }

@@ -1,0 +1,384 @@
+//! Editing of a level: selection, drags, and the room that shows the level.
+
+use super::{Game, Screen};
+use crate::session::Session;
+use fuwafuwa::Vec3;
+use fuwafuwa_scenes::Scene;
+use std::sync::Arc;
+use tamaire_maker::draft::Draft;
+use tamaire_maker::items::{self, Clip, Guide, Item, Kind};
+use tamaire_play::Level;
+
+/// Distance between two lines of the grid to which things snap [m].
+pub const GRID: f32 = 0.05;
+/// Angle by which a button turns things [rad].
+const TURN: f32 = std::f32::consts::PI / 12.0;
+/// Factor by which a button makes things larger.
+const LARGER: f32 = 1.15;
+/// Distance of a pasted copy from its original [m].
+const BESIDE: f32 = 0.15;
+/// Speed at which time runs back after a test, in multiples of real time.
+const HOMEWARD: f32 = 6.0;
+/// Time that showing a changed room may take while something is dragged [s]. In a level that takes longer, things
+/// move when they are let go.
+const QUICK: f64 = 0.03;
+
+/// Part of the editor below the room.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum EditorPart {
+    /// Things to add.
+    #[default]
+    Things,
+    /// What can be done with the selection.
+    Selection,
+}
+
+/// State of the editor.
+#[derive(Default)]
+pub struct Editor {
+    /// Selected items.
+    pub selection: Vec<Item>,
+    /// What was copied.
+    clip: Option<Clip>,
+    /// Whether a press adds to the selection.
+    pub is_adding: bool,
+    /// Whether things snap to the grid and to each other.
+    pub snaps: bool,
+    /// Drag in progress.
+    pub drag: Option<Drag>,
+    /// Selection after the drag that turns it: what was an obstacle may become a rigid body.
+    pub turned: Option<Vec<Item>>,
+    /// Lines on which the dragged things align with others.
+    pub guides: Vec<Guide>,
+    /// Part that is shown.
+    pub part: EditorPart,
+    /// Reason why the level cannot be played.
+    pub problem: Option<String>,
+    /// Whether showing a changed room takes too long for each frame of a drag.
+    is_slow: bool,
+    /// Whether the round in the room is a test of the level, which returns to the editor.
+    is_test: bool,
+    /// Whether time runs back from a test to the editor.
+    returns: bool,
+}
+
+/// Drag of the selection.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Drag {
+    /// Moves the selection from a point [m].
+    Move(Vec3),
+    /// Stretches the selection about a point [m], with the handle at another one.
+    Stretch(Vec3, Vec3),
+    /// Turns the selection about a point [m], with the handle at another one.
+    Turn(Vec3, Vec3),
+    /// Selects what is in a frame, from a point [m].
+    Frame(Vec3),
+}
+
+impl Editor {
+    /// Whether an item of the level as it is shown is selected.
+    pub fn is_selected(&self, item: Item) -> bool {
+        self.turned
+            .as_ref()
+            .unwrap_or(&self.selection)
+            .contains(&item)
+    }
+
+    fn forget(&mut self) {
+        let snaps = self.snaps;
+        *self = Self {
+            clip: self.clip.take(),
+            snaps,
+            ..Self::default()
+        };
+    }
+}
+
+impl Game {
+    /// Opens the editor with a level of the list.
+    pub fn edit(&mut self, index: usize) {
+        let level = self.levels[index].clone();
+        self.edit_level(&level);
+        if self.is_own(index) {
+            self.maker.origin = None;
+        }
+    }
+
+    /// Opens the editor with a copy of a level, or with an own level itself.
+    pub fn edit_level(&mut self, level: &Level) {
+        let text = self.text_of(level);
+        self.maker.draft = Draft::of_level(level, text.as_deref());
+        (self.maker.body, self.maker.is_room_empty) = (None, false);
+        (self.maker.won, self.maker.check) = (None, None);
+        self.maker.origin = Some(level.game().name.en.clone());
+        self.maker.editor.forget();
+        self.maker.editor.snaps = true;
+        self.go(Screen::Editor);
+    }
+
+    /// Opens the editor with an empty room in 2D or 3D.
+    pub fn edit_blank(&mut self, dim: u8) {
+        self.maker.draft = Draft::blank(dim);
+        self.maker.origin = None;
+        (self.maker.body, self.maker.is_room_empty) = (Some(0), false);
+        self.maker.editor.forget();
+        self.maker.editor.snaps = true;
+        self.go(Screen::Editor);
+    }
+
+    /// Opens the editor with the level of the current round.
+    pub fn edit_current(&mut self) {
+        let level = self.bout.round().level().clone();
+        let listed = self.listed(&level);
+        match listed {
+            Some(index) => self.edit(index),
+            None => self.edit_level(&level),
+        }
+    }
+
+    /// Selects everything.
+    pub fn select_all(&mut self) {
+        self.maker.editor.selection = items::items(self.maker.draft.scene());
+        self.maker.editor.part = EditorPart::Selection;
+    }
+
+    /// Makes what was previewed a step of undo.
+    pub fn settle_preview(&mut self) {
+        if self.maker.draft.settle() {
+            self.settle();
+        }
+    }
+
+    /// Opens the editor with the room of the drawing.
+    pub fn edit_room(&mut self) {
+        self.maker.put_drawing();
+        self.maker.is_room_empty = false;
+        self.maker.editor.forget();
+        self.maker.editor.snaps = true;
+        self.go(Screen::Editor);
+    }
+
+    /// Returns the text of a level as its author wrote it, if it is known.
+    pub(super) fn text_of(&self, level: &Level) -> Option<String> {
+        let built_in = tamaire_play::level::built_in().find(|(id, _)| *id == level.id);
+        let built_in = built_in.map(|(_, text)| text.to_string());
+        built_in.or_else(|| self.files.level_text(&level.id))
+    }
+
+    /// Shows the level that is being edited in the room.
+    pub fn show_draft(&mut self) {
+        let began = self.clock.now();
+        match self.maker.draft.level() {
+            Ok(level) => {
+                self.maker.editor.problem = None;
+                let session = Session::of_people(Arc::new(level)).without_rewind();
+                self.bout.show(session);
+            }
+            Err(error) => {
+                let told = (self.words().level_error)(&error);
+                self.maker.editor.problem = Some(told);
+            }
+        }
+        self.maker.editor.is_slow = self.clock.now() - began > QUICK;
+    }
+
+    /// Makes a change of the level, as one step of undo.
+    pub fn change_level(&mut self, change: impl FnOnce(&mut Scene)) {
+        self.maker.draft.change(change);
+        self.settle();
+    }
+
+    /// Shows a change of the level that is not finished, such as that of a drag.
+    pub fn preview_level(&mut self, change: impl FnOnce(&mut Scene)) {
+        self.maker.draft.preview(change);
+        if !self.maker.editor.is_slow {
+            self.show_draft();
+        }
+    }
+
+    /// Ends a drag.
+    pub fn end_drag(&mut self) {
+        if self.maker.editor.drag.take().is_some() {
+            self.maker.draft.settle();
+            if let Some(turned) = self.maker.editor.turned.take() {
+                self.maker.editor.selection = turned;
+            }
+            self.settle();
+        }
+    }
+
+    /// Forgets selected items that are gone, and shows the level.
+    fn settle(&mut self) {
+        let known = items::items(self.maker.draft.scene());
+        let editor = &mut self.maker.editor;
+        editor.selection.retain(|item| known.contains(item));
+        if editor.selection.is_empty() {
+            editor.part = EditorPart::Things;
+        }
+        self.show_draft();
+    }
+
+    /// Goes back to the level before the last change, or forward again.
+    pub fn undo_edit(&mut self, forward: bool) {
+        let has_changed = match forward {
+            true => self.maker.draft.redo(),
+            false => self.maker.draft.undo(),
+        };
+        if has_changed {
+            self.settle();
+        }
+    }
+
+    /// Selects an item, or takes it out of the selection if presses add to it.
+    pub fn select(&mut self, item: Item) {
+        let editor = &mut self.maker.editor;
+        let is_selected = editor.selection.contains(&item);
+        match (editor.is_adding, is_selected) {
+            (true, true) => editor.selection.retain(|known| *known != item),
+            (true, false) => editor.selection.push(item),
+            (false, _) => editor.selection = vec![item],
+        }
+        editor.part = match editor.selection.is_empty() {
+            true => EditorPart::Things,
+            false => EditorPart::Selection,
+        };
+    }
+
+    /// Selects nothing.
+    pub fn select_nothing(&mut self) {
+        self.maker.editor.selection.clear();
+        self.maker.editor.part = EditorPart::Things;
+    }
+
+    /// Makes a change that returns the items to be selected after it.
+    fn change_and_select(&mut self, change: impl FnOnce(&mut Scene) -> Vec<Item>) {
+        let selection = self.maker.draft.change(change);
+        self.maker.editor.selection = selection;
+        self.maker.editor.part = EditorPart::Selection;
+        self.settle();
+    }
+
+    /// Adds something in the middle of the room, and selects it.
+    pub fn add_thing(&mut self, kind: Kind) {
+        let [low, high] = self.maker.draft.scene().view.map(Vec3::from);
+        self.change_and_select(|scene| items::add(scene, kind, 0.5 * (low + high)));
+        if self.maker.editor.selection.is_empty() {
+            self.notify(self.making().not_pasted.to_string());
+        }
+    }
+
+    /// Removes the selection.
+    pub fn remove_selection(&mut self) {
+        let selection = self.maker.editor.selection.clone();
+        let mut refused = false;
+        self.change_level(|scene| {
+            let removed = items::remove(scene, &selection);
+            refused = !removed.refused.is_empty();
+        });
+        self.select_nothing();
+        if refused {
+            self.notify(self.making().last_one_stays.to_string());
+        }
+    }
+
+    /// Copies the selection.
+    pub fn copy_selection(&mut self) {
+        let scene = self.maker.draft.scene();
+        self.maker.editor.clip = Some(items::copy(scene, &self.maker.editor.selection));
+    }
+
+    /// Whether something was copied that fits into this level.
+    pub fn can_paste(&self) -> bool {
+        let dim = self.maker.draft.scene().dim;
+        { self.maker.editor.clip.as_ref() }.is_some_and(|clip| clip.dim() == dim)
+    }
+
+    /// Pastes what was copied, and selects it.
+    pub fn paste(&mut self) {
+        let Some(clip) = self.maker.editor.clip.clone().filter(|_| self.can_paste()) else {
+            return;
+        };
+        let by = Vec3::new(BESIDE, BESIDE, 0.0);
+        self.change_and_select(|scene| items::paste(scene, &clip, by));
+        if self.maker.editor.selection.is_empty() {
+            self.notify(self.making().not_pasted.to_string());
+        }
+    }
+
+    /// Returns the box around the selection [m].
+    pub fn selection_box(&self) -> Option<[Vec3; 2]> {
+        let scene = self.maker.draft.scene();
+        let editor = &self.maker.editor;
+        let selection = editor.turned.as_ref().unwrap_or(&editor.selection).iter();
+        let boxes = selection.filter_map(|&item| items::bounds(scene, item));
+        boxes.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
+    }
+
+    /// Moves the selection by a step.
+    pub fn nudge(&mut self, by: Vec3) {
+        let selection = self.maker.editor.selection.clone();
+        self.change_level(|scene| items::translate(scene, &selection, by));
+    }
+
+    /// Turns the selection about its middle, in steps of 15°.
+    pub fn turn_selection(&mut self, axis: Vec3, steps: f32) {
+        if let Some([low, high]) = self.selection_box() {
+            let selection = self.maker.editor.selection.clone();
+            let about = 0.5 * (low + high);
+            self.change_and_select(|scene| {
+                items::rotate(scene, &selection, about, axis, steps * TURN)
+            });
+        }
+    }
+
+    /// Makes the selection larger, or smaller with a negative number of steps.
+    pub fn scale_selection(&mut self, steps: i32) {
+        if let Some([low, high]) = self.selection_box() {
+            let selection = self.maker.editor.selection.clone();
+            let (about, factor) = (0.5 * (low + high), LARGER.powi(steps));
+            self.change_level(|scene| {
+                items::stretch(scene, &selection, about, Vec3::splat(factor));
+            });
+        }
+    }
+
+    /// Plays the level that is being edited.
+    pub fn test_level(&mut self) {
+        self.end_drag();
+        match self.maker.draft.level() {
+            Ok(level) => {
+                self.begin(Session::of_people(Arc::new(level)));
+                self.maker.editor.is_test = true;
+            }
+            Err(error) => self.notify((self.words().level_error)(&error)),
+        }
+    }
+
+    /// Whether the current round is a test of the level that is being edited.
+    pub fn is_test(&self) -> bool {
+        self.screens.has(Screen::Editor) && self.maker.editor.is_test
+    }
+
+    /// Lets time run back from a test to the editor.
+    pub fn end_test(&mut self) {
+        self.go(Screen::Play);
+        self.maker.editor.returns = true;
+    }
+
+    /// Returns the time by which a test runs back in a frame of `seconds` [s], on the way to the editor. `None` while no
+    /// test ends.
+    pub(super) fn homeward(&mut self, seconds: f32) -> Option<f32> {
+        if !self.maker.editor.returns {
+            return None;
+        }
+        let left = self.bout.session.seconds_to_rewind();
+        if left <= 0.0 || self.settings.reduced_motion || !self.may_rewind() {
+            self.maker.editor.returns = false;
+            self.bout.session.run_forward();
+            self.screens.close(Screen::Play);
+            self.arrive();
+            return None;
+        }
+        Some(HOMEWARD * seconds)
+    }
+}

@@ -1,0 +1,303 @@
+//! Making of bodies and levels: the paper, the block of voxels, and the level into which they go.
+
+use super::{Editor, Game, Screen};
+use crate::session::Session;
+use egui::Vec2;
+use fuwafuwa::Vec3;
+use fuwafuwa_scenes::scene::Form;
+use std::sync::Arc;
+use tamaire_maker::body;
+use tamaire_maker::check::Check;
+use tamaire_maker::draft::Draft;
+use tamaire_maker::drawing::{Brush, Drawing};
+use tamaire_maker::items::Item;
+use tamaire_maker::palette::Palette;
+use tamaire_play::{Level, Replay};
+
+/// Tool of a drawing.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub enum DrawingTool {
+    /// Draws with the crayon.
+    #[default]
+    Crayon,
+    /// Colours what is there with the crayon.
+    Paint,
+    /// Takes away.
+    Eraser,
+    /// Fills an area that is enclosed.
+    Bucket,
+    /// Prints a shape.
+    Stamp(Form),
+}
+
+/// Radii of the crayon [cells], as on a paper of 64 cells.
+pub const WIDTHS: [f32; 3] = [1.25, 2.5, 4.5];
+/// Size of a stamp in multiples of the diameter of the crayon.
+const STAMP: f32 = 4.0;
+/// Cells of a block for one of the paper.
+const IN_BLOCK: f32 = 0.7;
+
+/// The drawing in the making, and the level into which it goes.
+pub struct Maker {
+    /// Drawing on the paper.
+    pub paper: Drawing,
+    /// Body of voxels.
+    pub block: Drawing,
+    /// Whether the block is shown, otherwise the paper.
+    pub shows_block: bool,
+    /// Materials of the drawings.
+    pub palette: Palette,
+    /// Number of the chosen crayon.
+    pub crayon: u8,
+    /// Chosen tool.
+    pub tool: DrawingTool,
+    /// Index of the width of the crayon in [`WIDTHS`].
+    pub width: usize,
+    /// Direction from which the block is seen: azimuth and elevation [rad].
+    pub angles: [f32; 2],
+    /// End of the stroke that is being drawn [cells]. `None` between strokes, and while a stroke leaves the drawing.
+    pub pen: Option<Vec3>,
+    /// Block before the stroke that is being drawn. A stroke follows this surface, so that it does not grow towards the
+    /// player.
+    pub before_stroke: Option<Drawing>,
+    /// Whether a stroke is being drawn.
+    is_drawing: bool,
+    /// Cursor of players without a pointer [cells]; `None` while it is not used.
+    pub cursor: Option<Cursor>,
+    /// Level into which the drawing goes.
+    pub draft: Draft,
+    /// Index of the drawn body in the level. `None` = it becomes a new body.
+    pub body: Option<usize>,
+    /// Whether the level is an empty room, made for the drawing.
+    pub is_room_empty: bool,
+    /// State of the editor.
+    pub editor: Editor,
+    /// Name of the level from which this one is made, unless it is the player's own.
+    pub origin: Option<String>,
+    /// Checks of the level, from when they are first shown.
+    pub check: Option<Check>,
+    /// Shortest win of the level by its maker.
+    pub won: Option<Replay>,
+    /// Whether the QR code is shown.
+    pub shows_code: bool,
+}
+
+/// Cursor on the paper for players with keys, a pad or one switch.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Cursor {
+    /// Position on the sheet, each coordinate from 0 to 1, from its upper left corner.
+    pub at: Vec2,
+    /// Whether the pen is down.
+    pub is_down: bool,
+    /// Axis along which the cursor sweeps for a player with one switch.
+    pub sweep: Option<usize>,
+}
+
+impl Default for Maker {
+    fn default() -> Self {
+        Self {
+            paper: Drawing::paper(),
+            block: Drawing::block(),
+            shows_block: false,
+            palette: Palette::default(),
+            crayon: 1,
+            tool: DrawingTool::default(),
+            width: 1,
+            angles: [0.6, 0.45],
+            pen: None,
+            before_stroke: None,
+            is_drawing: false,
+            cursor: None,
+            draft: Draft::blank(2),
+            body: Some(0),
+            is_room_empty: true,
+            editor: Editor::default(),
+            origin: None,
+            check: None,
+            won: None,
+            shows_code: false,
+        }
+    }
+}
+
+impl Maker {
+    /// Returns the drawing that is shown.
+    pub fn drawing(&self) -> &Drawing {
+        match self.shows_block {
+            true => &self.block,
+            false => &self.paper,
+        }
+    }
+
+    /// Returns the drawing that is shown, to change it.
+    pub fn drawing_mut(&mut self) -> &mut Drawing {
+        match self.shows_block {
+            true => &mut self.block,
+            false => &mut self.paper,
+        }
+    }
+
+    /// Radius of the crayon [cells], at the usual pressure.
+    pub fn radius(&self) -> f32 {
+        let scale = if self.shows_block { IN_BLOCK } else { 1.0 };
+        scale * WIDTHS[self.width.min(WIDTHS.len() - 1)]
+    }
+
+    /// Width of a stamp [cells].
+    pub fn stamp_width(&self) -> f32 {
+        2.0 * STAMP * self.radius()
+    }
+
+    /// Draws from the last point of the stroke to `at` [cells] with the chosen tool. A pen that is pressed harder than
+    /// usual, at 1, draws wider. Returns whether anything has changed.
+    pub fn draw_to(&mut self, at: Vec3, pressure: f32) -> bool {
+        let (tool, crayon, radius) = (self.tool, self.crayon, pressure * self.radius());
+        let (from, width) = (self.pen.unwrap_or(at), self.stamp_width());
+        let begins = !std::mem::replace(&mut self.is_drawing, true);
+        self.pen = Some(at);
+        let drawing = self.drawing_mut();
+        match tool {
+            DrawingTool::Crayon => drawing.stroke(from, at, radius, Brush::Draw(crayon)),
+            DrawingTool::Paint => drawing.stroke(from, at, radius, Brush::Paint(crayon)),
+            DrawingTool::Eraser => drawing.stroke(from, at, radius, Brush::Erase),
+            DrawingTool::Bucket if begins => {
+                let cell = at.floor().to_array().map(|k| k as i32);
+                drawing.fill(cell, crayon)
+            }
+            DrawingTool::Stamp(form) if begins => drawing.stamp(form, at, pressure * width, crayon),
+            DrawingTool::Bucket | DrawingTool::Stamp(_) => false,
+        }
+    }
+
+    /// Whether a stroke is being drawn.
+    pub fn is_drawing(&self) -> bool {
+        self.is_drawing
+    }
+
+    /// Ends the stroke.
+    pub fn lift_pen(&mut self) {
+        (self.pen, self.before_stroke) = (None, None);
+        if std::mem::take(&mut self.is_drawing) {
+            self.drawing_mut().end_stroke();
+        }
+    }
+
+    /// Whether the drawing may become a body in 3D: it is alone, or its level is in 3D.
+    pub fn may_turn_solid(&self) -> bool {
+        self.is_room_empty || self.draft.scene().dim == 3
+    }
+
+    /// Shows the paper or the block. A room for the drawing alone follows.
+    pub fn show_block(&mut self, shows_block: bool) {
+        self.lift_pen();
+        self.cursor = None;
+        self.shows_block = shows_block;
+        let dim = if shows_block { 3 } else { 2 };
+        if self.is_room_empty && self.draft.scene().dim != dim {
+            (self.draft, self.body) = (Draft::blank(dim), Some(0));
+        }
+    }
+
+    /// Makes the drawing on the paper a block, and shows it.
+    pub fn make_solid(&mut self, made: impl Fn(&Drawing) -> Drawing) {
+        self.lift_pen();
+        if !self.paper.is_empty() {
+            self.block.replace(&made(&self.paper));
+        }
+        self.show_block(true);
+    }
+
+    /// Puts the drawing into the level. Returns whether anything is drawn.
+    pub(super) fn put_drawing(&mut self) -> bool {
+        self.lift_pen();
+        if self.drawing().is_empty() {
+            return false;
+        }
+        let [low, high] = self.draft.scene().view.map(Vec3::from);
+        let (drawing, palette) = (self.drawing().clone(), self.palette.clone());
+        let before = self.body;
+        let mut put = None;
+        self.draft.change(|scene| {
+            put = body::put(scene, before, &drawing, &palette, 0.5 * (low + high));
+        });
+        self.body = put;
+        true
+    }
+}
+
+impl Game {
+    /// Opens the paper.
+    pub fn open_paper(&mut self) {
+        self.go(Screen::Paper);
+    }
+
+    /// Drops the drawing into the room and starts a round there.
+    pub fn drop_drawing(&mut self) {
+        if !self.maker.put_drawing() {
+            return self.notify(self.making().draw_first.to_string());
+        }
+        if self.screens.has(Screen::Editor) {
+            return self.go(Screen::Editor);
+        }
+        match self.maker.draft.level() {
+            Ok(level) => {
+                self.bout.camera.face_front();
+                self.begin(Session::of_people(Arc::new(level)));
+            }
+            Err(error) => self.notify((self.words().level_error)(&error)),
+        }
+    }
+
+    /// Takes the body of a picture or model to the paper that is open. Returns whether the level is made from one that
+    /// fits the dimension of the drawing.
+    pub(super) fn draw_from(&mut self, level: &Level) -> bool {
+        let scene = level.scene();
+        let is_import = scene.body.first().is_some_and(|body| body.file.is_some());
+        let Ok(Some((drawing, palette))) = body::take(scene, 0) else {
+            return false;
+        };
+        let maker = &mut self.maker;
+        if !is_import || drawing.is_paper() && maker.shows_block && !maker.is_room_empty {
+            return false;
+        }
+        maker.show_block(!drawing.is_paper());
+        maker.palette = palette;
+        maker.drawing_mut().replace(&drawing);
+        for note in scene.notes().iter().map(self.words().import_note) {
+            self.notify(note);
+        }
+        true
+    }
+
+    /// Opens the paper with the selected body.
+    pub fn draw_selected(&mut self) {
+        let [Item::Body(index)] = self.maker.editor.selection[..] else {
+            return;
+        };
+        match body::take(self.maker.draft.scene(), index) {
+            Ok(Some((drawing, palette))) => {
+                let maker = &mut self.maker;
+                maker.shows_block = !drawing.is_paper();
+                *maker.drawing_mut() = drawing;
+                (maker.palette, maker.body) = (palette, Some(index));
+                self.go(Screen::Paper);
+            }
+            Ok(None) => {}
+            Err(error) => self.notify(error.to_string()),
+        }
+    }
+
+    /// Opens the paper for a new body of the level.
+    pub fn draw_new_body(&mut self) {
+        let maker = &mut self.maker;
+        maker.shows_block = maker.draft.scene().dim == 3;
+        (maker.paper, maker.block) = (Drawing::paper(), Drawing::block());
+        maker.body = None;
+        self.go(Screen::Paper);
+    }
+
+    /// Whether the current round is played with the player's drawing.
+    pub fn is_with_drawing(&self) -> bool {
+        self.screens.has(Screen::Paper) && self.bout.session.is_played()
+    }
+}

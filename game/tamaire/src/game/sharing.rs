@@ -1,0 +1,240 @@
+//! Checking, keeping and sending of levels that the player makes.
+
+use super::{Game, Maker, Screen};
+use crate::platform::address_of_page;
+use crate::qr::Code;
+use crate::words::{MakingWords, Words};
+use std::sync::Arc;
+use tamaire_maker::check::Check;
+use tamaire_maker::draft::Language;
+use tamaire_play::link::address;
+use tamaire_play::{Level, Replay};
+
+/// Maximum length of the name of a level or of its maker [characters].
+pub const MOST_NAME: usize = 40;
+/// Share of a frame of 1/60 s in which checks are computed [s].
+const BUDGET: f64 = 0.008;
+
+impl Maker {
+    /// Returns why the level is not finished, in words for its maker. `None` if it can be kept.
+    pub fn problem(&self, said: &Words, words: &MakingWords) -> Option<String> {
+        let wrong = self
+            .draft
+            .level()
+            .err()
+            .map(|error| (said.level_error)(&error));
+        let has_name = !self.draft.name(Language::English).is_empty();
+        wrong.or_else(|| (!has_name).then(|| words.needs_name.to_string()))
+    }
+
+    /// Returns the shortest time in which its maker has won the level as it is now [s].
+    pub fn won_by_maker(&self) -> Option<f32> {
+        let level = self.draft.level().ok()?;
+        let won = self.won.as_ref().filter(|won| won.is_of(&level))?;
+        won.outcome.map(|outcome| outcome.seconds())
+    }
+}
+
+impl Game {
+    /// Returns the name of the level that is being edited, in the language of the player if it has one.
+    pub fn draft_name(&self) -> &str {
+        let names =
+            [self.language_of_names(), Language::English].map(|it| self.maker.draft.name(it));
+        names
+            .into_iter()
+            .find(|name| !name.is_empty())
+            .unwrap_or_default()
+    }
+
+    /// Names the level that is being edited, in the language of the player. A level without an English name gets the
+    /// same one there.
+    pub fn name_draft(&mut self, name: &str) {
+        let language = self.language_of_names();
+        let draft = &mut self.maker.draft;
+        let follows = draft.name(Language::English) == draft.name(language);
+        draft.set_name(language, name);
+        if follows {
+            draft.set_name(Language::English, name);
+        }
+    }
+
+    fn language_of_names(&self) -> Language {
+        match self.settings.language {
+            crate::words::Language::English => Language::English,
+            crate::words::Language::Japanese => Language::Japanese,
+        }
+    }
+
+    /// Notes that the maker has won the level, if the round is a test of it.
+    pub(super) fn note_test_win(&mut self) {
+        if !self.is_test() {
+            return;
+        }
+        let replay = self.bout.round().replay();
+        let level = self.bout.round().level();
+        let known = self.maker.won.as_ref().filter(|won| won.is_of(level));
+        if known.is_none_or(|known| replay.clock_ticks() < known.clock_ticks()) {
+            self.maker.won = Some(replay);
+        }
+    }
+
+    /// Begins to check the level that is being edited, or goes on with it.
+    pub fn check_draft(&mut self) {
+        let Ok(level) = self.maker.draft.level() else {
+            self.maker.check = None;
+            return;
+        };
+        let is_known = { self.maker.check.as_ref() }.is_some_and(|check| **check.level() == level);
+        if !is_known {
+            self.maker.check = Some(Check::new(Arc::new(level)));
+        }
+        let clock = self.clock.clone();
+        if let Some(check) = &mut self.maker.check {
+            check.go_on(BUDGET, || clock.now());
+        }
+    }
+
+    /// Returns the level that is being edited with the names of its maker and of its origin, ready to be kept.
+    fn finished(&mut self) -> Option<Level> {
+        self.maker.draft.settle();
+        if let Some(problem) = self.maker.problem(self.words(), self.making()) {
+            self.notify(problem);
+            return None;
+        }
+        let maker = cleaned(&self.settings.maker_name);
+        self.maker
+            .draft
+            .set_maker((!maker.is_empty()).then_some(maker));
+        if let Some(origin) = &self.maker.origin {
+            self.maker.draft.set_origin(&cleaned(origin));
+        }
+        self.maker.draft.level().ok()
+    }
+
+    /// Keeps the level beside the shipped ones.
+    pub fn keep_draft(&mut self) {
+        let Some(mut level) = self.finished() else {
+            return;
+        };
+        level.id = self.free_id(&level);
+        self.maker.draft.set_id(&level.id);
+        let text = self.maker.draft.text();
+        let level = Arc::new(level);
+        self.levels.retain(|known| known.id != level.id);
+        self.levels.push(level.clone());
+        self.files.keep_level_text(&level.id, text);
+        let won = self.maker.won.clone().filter(|won| won.is_of(&level));
+        if let Some(won) = won {
+            self.files.keep_best(&level, named(won, &level.id));
+        }
+        self.notify(self.making().kept.to_string());
+    }
+
+    /// Returns the id under which a level is kept: that of the own level that was changed, or a new one.
+    fn free_id(&self, level: &Level) -> String {
+        let is_taken = |id: &str| self.levels.iter().any(|known| known.id == id);
+        let is_own = (0..self.levels.len())
+            .any(|index| self.levels[index].id == level.id && self.is_own(index));
+        if is_own {
+            return level.id.clone();
+        }
+        let numbered = (1..).map(|number| format!("my-level-{number}.toml"));
+        let mut free = numbered.filter(|id| !is_taken(id));
+        free.next().expect("there are more numbers than levels")
+    }
+
+    /// Copies a link to the level, with the maker's own round as a ghost to race if there is one.
+    pub fn copy_link_to_draft(&mut self) {
+        let Some(level) = self.finished() else {
+            return;
+        };
+        let won = self.maker.won.as_ref().filter(|won| won.is_of(&level));
+        // A round that is too long for a link is left out.
+        let link = won.and_then(|won| won.link().ok());
+        match link.map_or_else(|| level.link(), Ok) {
+            Ok(link) => self.copied = Some(address(&address_of_page(), &link)),
+            Err(error) => self.notify((self.words().link_error)(&error)),
+        }
+    }
+
+    /// Returns the QR code of the link to the level. `None` if the level is too large for one.
+    pub fn code_of_draft(&mut self) -> Option<Code> {
+        let level = self.maker.draft.level().ok()?;
+        Code::of_level(&address_of_page(), &level)
+    }
+
+    /// Saves the level as a file of its own.
+    pub fn save_draft_file(&mut self) {
+        if let Some(level) = self.finished() {
+            let text = self.maker.draft.text();
+            self.files.save_level(&self.free_id(&level), text);
+        }
+    }
+
+    /// Leaves the editor. A level that was changed and not kept stays in the making until another one is opened.
+    pub fn leave_editor(&mut self) {
+        self.end_drag();
+        self.screens.close(Screen::Editor);
+        self.arrive();
+    }
+}
+
+/// Returns who made a level and from which one it was made, as lines for the player.
+pub fn credits(level: &Level, words: &MakingWords) -> Vec<String> {
+    let game = level.game();
+    let line = |name: &Option<String>, told: fn(&str) -> String| {
+        let name = cleaned(name.as_deref()?);
+        (!name.is_empty()).then(|| told(&name))
+    };
+    let lines = [
+        line(&game.made_by, words.by),
+        line(&game.changed_from, words.changed_from),
+    ];
+    lines.into_iter().flatten().collect()
+}
+
+/// Returns a replay of the level under another name.
+fn named(mut replay: Replay, id: &str) -> Replay {
+    replay.level = id.to_string();
+    replay
+}
+
+/// Returns a name that other people chose as plain text: without control characters and without characters that change
+/// the direction of writing, with single spaces, and at most [`MOST_NAME`] characters long.
+pub fn cleaned(name: &str) -> String {
+    let is_plain = |letter: &char| {
+        let turns = matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        !letter.is_control() && !turns && *letter != '\u{feff}'
+    };
+    let plain: String = name
+        .chars()
+        .map(|letter| if letter == '\t' { ' ' } else { letter })
+        .filter(is_plain)
+        .collect();
+    let words = plain.split_whitespace().collect::<Vec<_>>().join(" ");
+    words
+        .chars()
+        .take(MOST_NAME)
+        .collect::<String>()
+        .trim()
+        .to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_others_become_plain_text() {
+        for (name, expected) in [
+            ("Mika", "Mika"),
+            ("  two\twords \n", "two words"),
+            ("\u{202e}evil\u{200f}", "evil"),
+            ("\u{7}", ""),
+            ("みか", "みか"),
+        ] {
+            assert_eq!(cleaned(name), expected, "{name:?}");
+        }
+        assert_eq!(cleaned(&"x".repeat(100)).len(), MOST_NAME);
+    }
+}

@@ -1,0 +1,348 @@
+//! The room in the editor: items to select, drag, stretch and turn.
+
+use crate::game::{Drag, EditorPart, GRID, Game};
+use app_shell::View;
+use app_shell::widgets::is_on;
+use egui::{
+    Color32, CursorIcon, EventFilter, Id, Key, Pos2, Rect, Response, Role, Sense, Shape, Stroke,
+    StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
+};
+use fuwafuwa::Vec3;
+use tamaire_maker::items::snapped;
+use tamaire_maker::items::{self, Item};
+
+/// Least side of the place of an item that takes presses [points].
+const LEAST: f32 = 26.0;
+/// Radius of a handle [points].
+const HANDLE: f32 = 9.0;
+/// Distance of the handle for turning above the selection [points].
+const ABOVE: f32 = 34.0;
+/// Distance within which things align with each other [points].
+const REACH: f32 = 7.0;
+
+pub(super) fn show(game: &mut Game, ui: &mut Ui, room: Rect) {
+    let Some(view) = game.bout.view else {
+        return;
+    };
+    floor(game, ui, room, &view);
+    let scene = game.maker.draft.scene().clone();
+    let mut places: Vec<(Item, Rect)> = items::items(&scene)
+        .into_iter()
+        .filter_map(|item| {
+            let [low, high] = items::bounds(&scene, item)?;
+            let place = on_screen(&view, low, high).intersect(room.expand(LEAST));
+            let is_seen = place.width() >= 0.0 && place.height() >= 0.0;
+            is_seen.then(|| (item, place.expand2(lacking(place.size()))))
+        })
+        .collect();
+    // The smallest items come last, so that they are above the others.
+    places.sort_by(|a, b| b.1.area().total_cmp(&a.1.area()).then(a.0.cmp(&b.0)));
+    for (item, place) in places {
+        one(game, ui, &view, item, place);
+    }
+    handles(game, ui, &view);
+    guides(game, ui, room, &view);
+    frame(game, ui, &view);
+    problem(game, ui, room);
+}
+
+/// Returns the box on the screen around a box in the world.
+fn on_screen(view: &View, low: Vec3, high: Vec3) -> Rect {
+    let mut place = Rect::NOTHING;
+    for corner in 0..8u8 {
+        let pick = |axis: u8| corner >> axis & 1 == 1;
+        let at = Vec3::new(
+            if pick(0) { high.x } else { low.x },
+            if pick(1) { high.y } else { low.y },
+            if pick(2) { high.z } else { low.z },
+        );
+        place.extend_with(view.to_screen(at));
+    }
+    place
+}
+
+/// Returns by how much a place has to grow on each side to take presses.
+fn lacking(size: Vec2) -> Vec2 {
+    (0.5 * (Vec2::splat(LEAST) - size)).max(Vec2::ZERO)
+}
+
+/// Returns the point of the world below the pointer, at the height of the selection in 3D [m].
+fn under(game: &Game, view: &View, at: Pos2) -> Vec3 {
+    let middle = game.selection_box();
+    let height = middle.map_or(0.0, |[low, high]| 0.5 * (low.y + high.y));
+    view.to_world(at, height)
+}
+
+/// The empty part of the room: a press selects nothing, a drag selects what is in a frame.
+fn floor(game: &mut Game, ui: &mut Ui, room: Rect, view: &View) {
+    let floor = ui.interact(
+        room,
+        Id::unique("floor of the editor"),
+        Sense::click_and_drag(),
+    );
+    if floor.clicked() {
+        game.select_nothing();
+    }
+    if floor.drag_started()
+        && let Some(at) = floor.interact_pointer_pos()
+    {
+        let from = ui.input(|input| input.pointer.press_origin()).unwrap_or(at);
+        game.maker.editor.drag = Some(Drag::Frame(view.to_world(from, 0.0)));
+    }
+    follow(game, ui, view, &floor);
+}
+
+/// An item: a press selects it, a drag moves the selection.
+fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
+    let name = (game.making().item_name)(item);
+    let response = ui.interact(place, Id::unique(("item", item)), Sense::click_and_drag());
+    let is_selected = game.maker.editor.is_selected(item);
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, &name));
+    let ink = game.theme().accent;
+    if is_selected {
+        let rim = Stroke::new(2.5, ink);
+        ui.painter()
+            .rect_stroke(place, 4.0, rim, StrokeKind::Outside);
+    } else if response.hovered() || is_on(ui, &response) {
+        let rim = Stroke::new(2.0, ink.gamma_multiply(0.5));
+        ui.painter()
+            .rect_stroke(place, 4.0, rim, StrokeKind::Outside);
+    }
+    if response.hovered() {
+        ui.ctx().set_cursor_icon(CursorIcon::Grab);
+    }
+    if response.clicked() {
+        let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
+        let before = game.maker.editor.is_adding;
+        game.maker.editor.is_adding |= adds;
+        game.select(item);
+        game.maker.editor.is_adding = before;
+    }
+    if response.drag_started() {
+        if !is_selected {
+            game.maker.editor.selection = vec![item];
+            game.maker.editor.part = EditorPart::Selection;
+        }
+        let from = ui.input(|input| input.pointer.press_origin());
+        if let Some(from) = from {
+            game.maker.editor.drag = Some(Drag::Move(under(game, view, from)));
+        }
+    }
+    follow(game, ui, view, &response);
+    if is_selected && response.has_focus() {
+        by_arrows(game, ui, &response);
+    }
+}
+
+/// Moves the selection with the arrow keys, while a selected item has the focus. Escape leaves it.
+fn by_arrows(game: &mut Game, ui: &Ui, response: &Response) {
+    let filter = EventFilter {
+        tab: false,
+        horizontal_arrows: true,
+        vertical_arrows: true,
+        escape: true,
+    };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    let count = |key| ui.input(|input| input.num_presses(key)) as f32;
+    let by = vec2(
+        count(Key::ArrowRight) - count(Key::ArrowLeft),
+        count(Key::ArrowUp) - count(Key::ArrowDown),
+    );
+    let deep = count(Key::PageDown) - count(Key::PageUp);
+    if by != Vec2::ZERO || deep != 0.0 {
+        game.nudge(GRID * Vec3::new(by.x, by.y, deep));
+    }
+    if ui.input(|input| input.key_pressed(Key::Escape)) {
+        game.select_nothing();
+    }
+}
+
+/// Goes on with the drag that began on a widget.
+fn follow(game: &mut Game, ui: &Ui, view: &View, response: &Response) {
+    if response.drag_stopped() {
+        if let (Some(Drag::Frame(from)), Some(at)) =
+            (game.maker.editor.drag, response.interact_pointer_pos())
+        {
+            select_in(game, view, Rect::from_two_pos(view.to_screen(from), at));
+        }
+        game.end_drag();
+        return;
+    }
+    let (true, Some(at), Some(drag)) = (
+        response.dragged(),
+        response.interact_pointer_pos(),
+        game.maker.editor.drag,
+    ) else {
+        return;
+    };
+    let selection = game.maker.editor.selection.clone();
+    let snaps = game.maker.editor.snaps && !ui.input(|input| input.modifiers.alt);
+    match drag {
+        Drag::Frame(_) => {}
+        Drag::Move(from) => {
+            let mut by = under(game, view, at) - from;
+            game.maker.editor.guides.clear();
+            if snaps {
+                let before = game.maker.draft.scene_before();
+                let reach = REACH / view.scale.max(1.0);
+                let (aligned, guides) = items::aligned(before, &selection, by, reach);
+                by = match guides.is_empty() {
+                    true => snapped(by, GRID),
+                    false => aligned,
+                };
+                game.maker.editor.guides = guides;
+            }
+            game.preview_level(|scene| items::translate(scene, &selection, by));
+        }
+        Drag::Stretch(about, handle) => {
+            let now = under(game, view, at);
+            let factors = Vec3::from([0, 1, 2].map(|axis| {
+                let (before, after) = (handle[axis] - about[axis], now[axis] - about[axis]);
+                let share = if before.abs() < 1e-3 {
+                    1.0
+                } else {
+                    after / before
+                };
+                share.clamp(0.05, 20.0)
+            }));
+            game.preview_level(|scene| items::stretch(scene, &selection, about, factors));
+        }
+        Drag::Turn(about, handle) => {
+            let now = under(game, view, at);
+            let angle = |point: Vec3| (point.y - about.y).atan2(point.x - about.x);
+            let mut turn = angle(now) - angle(handle);
+            if snaps {
+                let step = std::f32::consts::PI / 12.0;
+                turn = (turn / step).round() * step;
+            }
+            let mut turned = Vec::new();
+            game.preview_level(|scene| {
+                turned = items::rotate(scene, &selection, about, Vec3::Z, turn);
+            });
+            game.maker.editor.turned = Some(turned);
+        }
+    }
+}
+
+/// Selects all items that are in a frame of the screen.
+fn select_in(game: &mut Game, view: &View, frame: Rect) {
+    let scene = game.maker.draft.scene();
+    let is_in = |item: &Item| {
+        let place = items::bounds(scene, *item).map(|[low, high]| on_screen(view, low, high));
+        place.is_some_and(|place| frame.contains_rect(place))
+    };
+    let found: Vec<Item> = items::items(scene).into_iter().filter(is_in).collect();
+    if found.is_empty() {
+        return game.select_nothing();
+    }
+    game.maker.editor.selection = found;
+    game.maker.editor.part = EditorPart::Selection;
+}
+
+/// Shows the handles around the selection in 2D: corners stretch, sides stretch along one axis, the one above turns.
+fn handles(game: &mut Game, ui: &mut Ui, view: &View) {
+    let Some([low, high]) = game.selection_box().filter(|_| view.space.is_none()) else {
+        return;
+    };
+    let middle = 0.5 * (low + high);
+    let ink = game.theme().accent;
+    let along = |share: f32, axis: usize| low[axis] + share * (high[axis] - low[axis]);
+    for (x, y) in [
+        (0.0, 0.0),
+        (1.0, 0.0),
+        (0.0, 1.0),
+        (1.0, 1.0),
+        (0.5, 0.0),
+        (0.5, 1.0),
+        (0.0, 0.5),
+        (1.0, 0.5),
+    ] {
+        let at = Vec3::new(along(x, 0), along(y, 1), middle.z);
+        // A handle in the middle of a side leaves the other axis as it is.
+        let handle = Vec3::new(
+            if x == 0.5 { middle.x } else { at.x },
+            if y == 0.5 { middle.y } else { at.y },
+            middle.z,
+        );
+        let opposite = Vec3::new(along(1.0 - x, 0), along(1.0 - y, 1), middle.z);
+        let name = ("handle", (2.0 * x) as i32, (2.0 * y) as i32);
+        let drag = Drag::Stretch(opposite, handle);
+        one_handle(game, ui, view, (name, view.to_screen(at)), drag, ink);
+    }
+    let top = view.to_screen(Vec3::new(middle.x, high.y, middle.z));
+    let at = top - vec2(0.0, ABOVE);
+    ui.painter().line_segment([top, at], Stroke::new(2.0, ink));
+    let drag = Drag::Turn(middle, Vec3::new(middle.x, high.y, middle.z));
+    one_handle(game, ui, view, (("turn", 0, 0), at), drag, ink);
+}
+
+fn one_handle(
+    game: &mut Game,
+    ui: &mut Ui,
+    view: &View,
+    (name, at): ((&str, i32, i32), Pos2),
+    drag: Drag,
+    ink: Color32,
+) {
+    let place = Rect::from_center_size(at, Vec2::splat(2.4 * HANDLE));
+    let response = ui.interact(place, Id::unique(name), Sense::DRAG);
+    let radius = if response.hovered() {
+        HANDLE
+    } else {
+        0.75 * HANDLE
+    };
+    let rim = Stroke::new(2.5, ink);
+    ui.painter().circle(at, radius, Color32::WHITE, rim);
+    if response.drag_started() {
+        game.maker.editor.drag = Some(drag);
+    }
+    follow(game, ui, view, &response);
+}
+
+/// Draws the lines on which the dragged things align.
+fn guides(game: &Game, ui: &Ui, room: Rect, view: &View) {
+    if !matches!(game.maker.editor.drag, Some(Drag::Move(_))) {
+        return;
+    }
+    let line = Stroke::new(1.5, game.theme().accent.gamma_multiply(0.7));
+    for guide in &game.maker.editor.guides {
+        let mut at = Vec3::ZERO;
+        at[guide.axis] = guide.at;
+        let at = view.to_screen(at);
+        let ends = match guide.axis {
+            0 => [pos2(at.x, room.top()), pos2(at.x, room.bottom())],
+            1 => [pos2(room.left(), at.y), pos2(room.right(), at.y)],
+            _ => continue,
+        };
+        ui.painter().add(Shape::dashed_line(&ends, line, 6.0, 5.0));
+    }
+}
+
+/// Draws the frame that selects what is in it.
+fn frame(game: &Game, ui: &Ui, view: &View) {
+    let Some(Drag::Frame(from)) = game.maker.editor.drag else {
+        return;
+    };
+    let Some(at) = ui.input(|input| input.pointer.latest_pos()) else {
+        return;
+    };
+    let place = Rect::from_two_pos(view.to_screen(from), at);
+    let ink = game.theme().accent;
+    let (fill, rim) = (ink.gamma_multiply(0.12), Stroke::new(1.5, ink));
+    ui.painter().rect(place, 2.0, fill, rim, StrokeKind::Middle);
+}
+
+/// Tells why the level cannot be played.
+fn problem(game: &Game, ui: &Ui, room: Rect) {
+    let Some(problem) = &game.maker.editor.problem else {
+        return;
+    };
+    let theme = game.theme();
+    let font = egui::FontId::proportional(18.0);
+    let wide = room.width() - 40.0;
+    let galley = { ui.painter() }.layout(problem.clone(), font, theme.accent, wide);
+    let at = pos2(room.center().x - 0.5 * galley.size().x, room.top() + 8.0);
+    let place = Rect::from_min_size(at, galley.size()).expand(8.0);
+    ui.painter().rect_filled(place, 8.0, theme.card);
+    ui.painter().galley(at, galley, theme.accent);
+}

@@ -1,0 +1,176 @@
+//! Page on which a level is checked, kept and sent.
+
+use super::super::widgets::{card, dim_background, focus_first, header, page, page_rect};
+use super::properties::{press, write};
+use crate::game::Game;
+use app_shell::Theme;
+use egui::{Color32, Key, RichText, Sense, Ui, UiBuilder, WidgetInfo, vec2};
+use tamaire_maker::check::{Check, Finding};
+use tamaire_sound::Menu;
+
+/// Width of the page [points].
+const WIDE: f32 = 700.0;
+/// Width and height of the QR code [points].
+const CODE: f32 = 320.0;
+
+pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
+    dim_background(ui, 255);
+    let (theme, said, words) = (game.theme(), game.words(), game.making());
+    game.check_draft();
+    let mut back = ui.input(|input| input.key_pressed(Key::Escape));
+    let area = page_rect(ui);
+    ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
+        let response = header(ui, &theme, said.back, words.finish);
+        focus_first(ui, &response);
+        back |= response.clicked();
+        page(ui, "finish", WIDE, |ui| {
+            card(ui, &theme, |ui| {
+                ui.set_width(ui.available_width());
+                names(game, ui, &theme);
+            });
+            ui.add_space(12.0);
+            card(ui, &theme, |ui| {
+                ui.set_width(ui.available_width());
+                checks(game, ui, &theme);
+            });
+            ui.add_space(12.0);
+            card(ui, &theme, |ui| {
+                ui.set_width(ui.available_width());
+                deeds(game, ui, &theme);
+            });
+        });
+    });
+    if back {
+        game.settle_preview();
+        game.blip(Menu::Back);
+        game.go_back();
+    }
+}
+
+/// Shows the names of the level and of its maker.
+fn names(game: &mut Game, ui: &mut Ui, theme: &Theme) {
+    let words = game.making();
+    let known = game.draft_name().to_string();
+    let mut name = known.clone();
+    write(ui, theme, words.name, &mut name);
+    if name != known {
+        game.name_draft(&name);
+    }
+    let mut maker = game.settings.maker_name.clone();
+    write(ui, theme, words.made_by, &mut maker);
+    if maker != game.settings.maker_name {
+        game.settings.maker_name = maker;
+        game.keep_settings();
+    }
+}
+
+/// Shows what bots found out about the level, and whether its maker has won it.
+fn checks(game: &Game, ui: &mut Ui, theme: &Theme) {
+    let (said, words) = (game.words(), game.making());
+    let line = |ui: &mut Ui, sign: &str, text: &str, ink: Color32| {
+        ui.label(
+            RichText::new(format!("{sign}  {text}"))
+                .size(21.0)
+                .color(ink),
+        );
+    };
+    if let Some(problem) = game.maker.problem(game.words(), words) {
+        line(ui, "✗", &problem, theme.accent);
+        return;
+    }
+    let Some(check) = &game.maker.check else {
+        return;
+    };
+    let told = |finding: Finding, name: &str| match finding {
+        Finding::Open => ("…", name.to_string(), theme.faint),
+        Finding::Yes(None) => ("✓", name.to_string(), theme.good),
+        Finding::Yes(Some(seconds)) => {
+            let time = (said.seconds)(seconds);
+            ("✓", format!("{name}  {time}"), theme.good)
+        }
+        Finding::NotFound => ("–", format!("{name}: {}", words.not_found), theme.ink),
+    };
+    let findings = check.findings();
+    if check.level().has_basket() {
+        let [squeezed, shaved] = words.can_be;
+        for (finding, name) in [(findings.squeezed, squeezed), (findings.shaved, shaved)] {
+            let (sign, text, ink) = told(finding, name);
+            line(ui, sign, &text, ink);
+        }
+        match game.maker.won_by_maker() {
+            Some(seconds) => {
+                let time = (said.seconds)(seconds);
+                line(
+                    ui,
+                    "✓",
+                    &format!("{}  {time}", words.won_by_maker),
+                    theme.good,
+                );
+            }
+            None => line(ui, "–", words.not_won_by_maker, theme.ink),
+        }
+        if let Finding::Yes(_) = findings.straight {
+            line(ui, "!", words.straight_wins, theme.accent);
+        }
+    }
+    let (sign, text, ink) = told(findings.real_time, words.real_time);
+    line(ui, sign, &text, ink);
+    if !check.is_done() {
+        progress(ui, theme, check);
+    }
+}
+
+/// Shows how far the checks are.
+fn progress(ui: &mut Ui, theme: &Theme, check: &Check) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 14.0), Sense::hover());
+    let share = check.progress();
+    response.widget_info(|| {
+        let percent = format!("{:.0} %", 100.0 * share);
+        WidgetInfo::labeled(egui::Role::ProgressIndicator, true, percent)
+    });
+    ui.painter().rect_filled(rect, 7.0, theme.button);
+    let done = rect.with_max_x(rect.left() + share * rect.width());
+    ui.painter().rect_filled(done, 7.0, theme.good);
+    ui.ctx().request_repaint();
+}
+
+/// Shows the buttons that keep and send the level.
+fn deeds(game: &mut Game, ui: &mut Ui, theme: &Theme) {
+    let (said, words) = (game.words(), game.making());
+    if press(ui, theme, words.keep, true) {
+        game.blip(Menu::Confirm);
+        game.keep_draft();
+    }
+    ui.add_space(8.0);
+    if press(ui, theme, said.link, false) {
+        game.blip(Menu::Confirm);
+        game.copy_link_to_draft();
+    }
+    ui.add_space(8.0);
+    if press(ui, theme, words.save_file, false) {
+        game.blip(Menu::Confirm);
+        game.save_draft_file();
+    }
+    ui.add_space(8.0);
+    if press(ui, theme, words.code, false) {
+        game.blip(Menu::Confirm);
+        game.maker.shows_code ^= true;
+    }
+    if game.maker.shows_code {
+        code(game, ui, theme);
+    }
+}
+
+/// Shows the QR code of the link, or why there is none.
+fn code(game: &mut Game, ui: &mut Ui, theme: &Theme) {
+    match game.code_of_draft() {
+        Some(found) => {
+            let most = CODE.min(ui.available_width());
+            super::super::code::draw(ui, &found, most);
+        }
+        None => {
+            let text = RichText::new(game.making().too_long_for_code);
+            ui.label(text.size(19.0).color(theme.ink));
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Screen on which players draw bodies: with crayons on paper, or as a block of voxels.
+
+mod block;
+mod paper;
+mod pen;
+mod picture;
+mod tools;
+
+pub(super) use tools::{round as round_button, turn_back};
+
+use super::hud;
+use super::widgets::dim_background;
+use crate::game::Game;
+use app_shell::widgets::{ButtonStyle, button};
+use egui::{Key, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
+use tamaire_sound::Menu;
+
+/// Margin around the parts of the screen [points].
+const EDGE: f32 = 12.0;
+/// Height of the row of buttons at the top [points].
+const TOP: f32 = 48.0;
+/// Width of a column of tools in a landscape window [points].
+const SIDE: f32 = 156.0;
+/// Height of the line below the paper [points].
+const LINE: f32 = 30.0;
+
+/// Parts of the screen.
+struct Parts {
+    top: Rect,
+    crayons: Rect,
+    paper: Rect,
+    line: Rect,
+    tools: Rect,
+}
+
+pub(super) fn show(game: &mut Game, ui: &mut Ui) {
+    dim_background(ui, 255);
+    let parts = parts(ui.max_rect(), hud::scale(game, ui));
+    let leaves = top(game, ui, parts.top);
+    match game.maker.shows_block {
+        false => paper::show(game, ui, parts.paper),
+        true => block::show(game, ui, parts.paper),
+    }
+    told(game, ui, parts.line);
+    tools::crayons(game, ui, parts.crayons);
+    tools::show(game, ui, parts.tools);
+    if leaves {
+        game.maker.lift_pen();
+        game.maker.cursor = None;
+        game.blip(Menu::Back);
+        game.go_back();
+    }
+}
+
+/// Divides the screen: crayons on the left, the paper in the middle, tools on the right, or all below each other in a
+/// portrait window. `scale` enlarges the buttons.
+fn parts(screen: Rect, scale: f32) -> Parts {
+    let all = screen.shrink(EDGE);
+    let top = all.with_max_y(all.top() + scale * TOP);
+    let below = all.with_min_y(top.bottom() + EDGE);
+    if screen.width() > screen.height() {
+        let middle = below.shrink2(vec2(SIDE + EDGE, 0.0));
+        let side = middle.width().min(middle.height() - LINE);
+        let centre = pos2(middle.center().x, middle.top() + 0.5 * side);
+        let paper = Rect::from_center_size(centre, Vec2::splat(side));
+        return Parts {
+            top,
+            crayons: below.with_max_x(below.left() + SIDE),
+            paper,
+            line: Rect::from_x_y_ranges(middle.x_range(), paper.bottom()..=paper.bottom() + LINE),
+            tools: below.with_min_x(below.right() - SIDE),
+        };
+    }
+    // The tools take what the paper leaves, but at least some rows.
+    let side = below.width().min(0.56 * below.height());
+    let centre = pos2(below.center().x, below.top() + 0.5 * side);
+    let paper = Rect::from_center_size(centre, Vec2::splat(side));
+    let line = below
+        .with_min_y(paper.bottom())
+        .with_max_y(paper.bottom() + LINE);
+    let rest = below.with_min_y(line.bottom() + 4.0);
+    let crayons = rest.with_max_y(rest.top() + scale * tools::CRAYON_ROW);
+    Parts {
+        top,
+        crayons,
+        paper,
+        line,
+        tools: rest.with_min_y(crayons.bottom() + 6.0),
+    }
+}
+
+/// Shows the row at the top. Returns whether the player leaves the screen.
+fn top(game: &mut Game, ui: &mut Ui, rect: Rect) -> bool {
+    let (theme, said, words) = (game.theme(), game.words(), game.making());
+    let high = rect.height();
+    let wide = (0.3 * rect.width()).min(150.0 * high / TOP);
+    let size = vec2(wide, high);
+    let place = |left: f32, size: Vec2| Rect::from_min_size(pos2(left, rect.top()), size);
+    let mut press = |text: &str, place: Rect, style: ButtonStyle| {
+        let builder = UiBuilder::new().max_rect(place);
+        let shown = ui.scope_builder(builder, |ui| button(ui, &theme, text, place.size(), style));
+        shown.inner
+    };
+    let back = press(said.back, place(rect.left(), size), ButtonStyle::Other);
+    let drop = press(
+        words.drop,
+        place(rect.right() - wide, size),
+        ButtonStyle::Main,
+    );
+    let mut leaves = back.clicked();
+    if drop.clicked() {
+        game.blip(Menu::Confirm);
+        game.drop_drawing();
+    }
+    let is_escape = ui.input(|input| input.key_pressed(Key::Escape));
+    leaves |= is_escape && game.maker.cursor.is_none();
+    let middle = Rect::from_x_y_ranges(
+        rect.left() + wide + EDGE..=rect.right() - wide - EDGE,
+        rect.y_range(),
+    );
+    tools::history(game, ui, middle);
+    leaves
+}
+
+/// Tells below the paper what may surprise: thin parts and separate pieces.
+fn told(game: &Game, ui: &Ui, rect: Rect) {
+    let (theme, words) = (game.theme(), game.making());
+    // In space, most bumps of a rounded body are thin, and break no sooner than the body.
+    let drawing = game.maker.drawing();
+    let pieces = drawing.pieces().count;
+    let (text, ink) = if drawing.is_paper() && drawing.thin_cells().contains(&true) {
+        (words.too_thin.to_string(), theme.accent)
+    } else if pieces > 1 {
+        ((words.pieces)(pieces), theme.ink)
+    } else if game.maker.cursor.is_some() {
+        (words.how_by_keys.to_string(), theme.ink)
+    } else {
+        return;
+    };
+    let galley = app_shell::widgets::fitted(ui.painter(), &text, 18.0, rect.width(), ink);
+    ui.painter()
+        .galley(rect.center() - 0.5 * galley.size(), galley, ink);
+}

@@ -1,0 +1,454 @@
+//! Drawing of bodies, and making, keeping and sending of levels.
+
+use crate::window::*;
+use app_shell::Clock;
+use egui::{Event, Key, PointerButton, Pos2, Rect, TouchPhase, Vec2, pos2, vec2};
+use egui_kittest::kittest::Queryable;
+use tamaire::game::{DrawingTool, Screen};
+use tamaire::platform::Files;
+use tamaire::words::Language;
+use tamaire_maker::items::{Item, Kind};
+use tamaire_play::{AnyRound, Level, Link};
+
+/// Sizes of the window in landscape and portrait orientation.
+const SIZES: [Vec2; 2] = [vec2(1000.0, 640.0), vec2(390.0, 844.0)];
+
+/// Draws with the mouse through points of the paper or the block, each from 0 to 1 from its upper left corner.
+fn draw(window: &mut Window, sheet: &str, points: &[[f32; 2]]) {
+    let rect = window.get_by_label(sheet).rect();
+    let at = |[x, y]: [f32; 2]| rect.min + vec2(x, y) * rect.size();
+    drag(
+        window,
+        &points.iter().map(|&point| at(point)).collect::<Vec<_>>(),
+    );
+}
+
+/// Drags the mouse through points of the screen.
+fn drag(window: &mut Window, points: &[Pos2]) {
+    let [first, .., last] = points else {
+        panic!("a drag has two points");
+    };
+    window.hover_at(*first);
+    frames(window, 2);
+    window.event(pointer_button(*first, PointerButton::Primary, true));
+    frames(window, 1);
+    for pair in points.windows(2) {
+        for step in 1..=6 {
+            window.event(Event::PointerMoved(
+                pair[0].lerp(pair[1], step as f32 / 6.0),
+            ));
+            frames(window, 1);
+        }
+    }
+    window.event(pointer_button(*last, PointerButton::Primary, false));
+    frames(window, 2);
+}
+
+/// A closed curve, as shares of the paper.
+fn ring() -> Vec<[f32; 2]> {
+    let point = |k: usize| {
+        let angle = std::f32::consts::TAU * k as f32 / 24.0;
+        [0.5 + 0.3 * angle.cos(), 0.5 + 0.3 * angle.sin()]
+    };
+    (0..=24).map(point).collect()
+}
+
+fn bodies(window: &mut Window) -> usize {
+    match game(window).bout.round() {
+        AnyRound::Plane(round) => round.world().soft_bodies().count(),
+        AnyRound::Space(round) => round.world().soft_bodies().count(),
+    }
+}
+
+/// Returns the number of solid voxels of the first body of the round.
+fn voxels(window: &mut Window) -> usize {
+    match game(window).bout.round() {
+        AnyRound::Plane(round) => {
+            let (_, body) = round.world().soft_bodies().next().expect("there is a body");
+            body.grid().solid_count()
+        }
+        AnyRound::Space(round) => {
+            let (_, body) = round.world().soft_bodies().next().expect("there is a body");
+            body.grid().solid_count()
+        }
+    }
+}
+
+#[test]
+fn own_drawing_is_in_the_hand_after_three_presses() {
+    for size in SIZES {
+        for language in [Language::English, Language::Japanese] {
+            let mut window = open(Files::nowhere(), size, 1.0);
+            game(&mut window).settings.language = language;
+            frames(&mut window, 2);
+            let words = language.making();
+            click(&mut window, words.draw);
+            draw(&mut window, words.paper, &ring());
+            let drawn = game(&mut window).maker.paper.solid_count();
+            assert!(drawn > 1000, "the closed line is filled: {drawn}");
+            click(&mut window, words.drop);
+            assert_eq!(screen(&window), Screen::Play);
+            assert_eq!((bodies(&mut window), voxels(&mut window)), (1, drawn));
+            frames(&mut window, 60);
+            let moved = game(&mut window).bout.round().progress().pieces;
+            assert_eq!(moved, 1);
+            press(&mut window, Key::Escape);
+            click(&mut window, words.to_paper);
+            assert_eq!(screen(&window), Screen::Paper);
+            assert_eq!(game(&mut window).maker.paper.solid_count(), drawn);
+        }
+    }
+}
+
+#[test]
+fn tools_of_the_paper_work_by_mouse() {
+    let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+    game(&mut window).open_paper();
+    frames(&mut window, 2);
+    draw(&mut window, "Paper", &[[0.2, 0.5], [0.8, 0.5]]);
+    let line = game(&mut window).maker.paper.solid_count();
+    window.get_by_label("Eraser").click();
+    frames(&mut window, 2);
+    draw(&mut window, "Paper", &[[0.5, 0.2], [0.5, 0.8]]);
+    assert!(game(&mut window).maker.paper.solid_count() < line);
+    assert_eq!(game(&mut window).maker.paper.pieces().count, 2);
+    window.get_by_label("Undo").click();
+    frames(&mut window, 2);
+    assert_eq!(game(&mut window).maker.paper.solid_count(), line);
+    window.get_by_label("Redo").click();
+    frames(&mut window, 2);
+    assert!(game(&mut window).maker.paper.solid_count() < line);
+    window.get_by_label("New page").click();
+    window.get_by_label("Heart").click();
+    frames(&mut window, 2);
+    window.get_by_label("Clay").click();
+    frames(&mut window, 2);
+    draw(&mut window, "Paper", &[[0.5, 0.5], [0.5, 0.5]]);
+    let heart = game(&mut window).maker.paper.clone();
+    assert!(heart.cells().contains(&4), "the clay is drawn");
+    assert_eq!(
+        game(&mut window).maker.tool,
+        DrawingTool::Stamp(fuwafuwa_scenes::scene::Form::Heart)
+    );
+    window.get_by_label("Fill").click();
+    window.get_by_label("Stone").click();
+    frames(&mut window, 2);
+    draw(&mut window, "Paper", &[[0.02, 0.02], [0.02, 0.02]]);
+    assert_eq!(notices(&window), "Close the line first, then fill it.");
+    draw(&mut window, "Paper", &[[0.5, 0.5], [0.5, 0.5]]);
+    let filled = game(&mut window).maker.paper.clone();
+    assert_eq!(filled.solid_count(), heart.solid_count());
+    assert!(filled.cells().contains(&5) && !filled.cells().contains(&4));
+}
+
+#[test]
+fn drawing_becomes_a_block_that_can_be_carved_and_dropped() {
+    for name in ["Puff up", "Spin round", "Make a slab"] {
+        let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+        game(&mut window).open_paper();
+        frames(&mut window, 2);
+        draw(&mut window, "Paper", &ring());
+        window.get_by_label(name).click();
+        frames(&mut window, 3);
+        assert!(game(&mut window).maker.shows_block);
+        let made = game(&mut window).maker.block.solid_count();
+        assert!(made > 500, "{name}: {made}");
+        window.get_by_label("Eraser").click();
+        frames(&mut window, 2);
+        draw(&mut window, "Block", &[[0.5, 0.5], [0.52, 0.5]]);
+        let carved = game(&mut window).maker.block.solid_count();
+        assert!(carved < made && carved > 0, "{name}: {carved} of {made}");
+        let before = game(&mut window).maker.angles;
+        draw(&mut window, "Block", &[[0.03, 0.1], [0.2, 0.2]]);
+        assert_ne!(
+            game(&mut window).maker.angles,
+            before,
+            "a drag beside the block turns it"
+        );
+        assert_eq!(game(&mut window).maker.block.solid_count(), carved);
+        click(&mut window, "Drop it!");
+        assert_eq!(screen(&window), Screen::Play);
+        assert_eq!(game(&mut window).bout.round().level().scene().dim, 3);
+        assert_eq!(voxels(&mut window), carved);
+        frames(&mut window, 30);
+    }
+}
+
+#[test]
+fn keys_and_one_switch_draw_without_a_pointer() {
+    let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+    game(&mut window).open_paper();
+    frames(&mut window, 3);
+    assert!(window.get_by_label("Paper").is_focused());
+    press(&mut window, Key::Enter);
+    press(&mut window, Key::Enter);
+    (0..12).for_each(|_| press(&mut window, Key::ArrowRight));
+    press(&mut window, Key::Enter);
+    let drawn = game(&mut window)
+        .maker
+        .paper
+        .bounds()
+        .expect("something is drawn");
+    assert!(drawn[1][0] - drawn[0][0] >= 12, "{drawn:?}");
+    press(&mut window, Key::Escape);
+    assert_eq!(
+        screen(&window),
+        Screen::Paper,
+        "the first Escape leaves the pen"
+    );
+    press(&mut window, Key::Escape);
+    assert_eq!(screen(&window), Screen::Title);
+
+    let game_now = game(&mut window);
+    game_now.settings.scanning = tamaire::input::Scanning::Quick;
+    game_now.maker.paper.clear();
+    game_now.open_paper();
+    frames(&mut window, 2);
+    window.get_by_label("Paper").focus();
+    frames(&mut window, 1);
+    for wait in [1, 30, 30] {
+        window.key_press(Key::Space);
+        frames(&mut window, wait);
+    }
+    frames(&mut window, 2);
+    assert!(game(&mut window).maker.paper.solid_count() > 0);
+    assert!(game(&mut window).maker.cursor.is_none());
+}
+
+/// Returns a clock that goes on by a millisecond each time it is read, so that checks in the background take several
+/// frames.
+fn slow_clock() -> Clock {
+    let time = std::cell::Cell::new(0.0);
+    Clock::of(move || {
+        time.set(time.get() + 0.001);
+        time.get()
+    })
+}
+
+/// Returns the middle of an item on the screen.
+fn place_of_item(window: &mut Window, item: Item) -> Pos2 {
+    let game = game(window);
+    let [low, high] =
+        tamaire_maker::items::bounds(game.maker.draft.scene(), item).expect("it has a place");
+    game.bout
+        .view
+        .expect("the room is shown")
+        .to_screen(0.5 * (low + high))
+}
+
+#[test]
+fn level_is_built_tested_kept_and_sent_in_both_languages() {
+    for language in [Language::English, Language::Japanese] {
+        let folder = folder();
+        let mut window = open(Files::in_folder(folder.path()), SIZES[0], 1.0);
+        game(&mut window).settings.language = language;
+        game(&mut window).clock = slow_clock();
+        let words = language.making();
+        game(&mut window).go(Screen::Levels);
+        frames(&mut window, 3);
+        click(&mut window, words.new_level);
+        assert_eq!(screen(&window), Screen::Editor);
+        for kind in [Kind::Basket, Kind::SeeSaw, Kind::Rope, Kind::Wind] {
+            game(&mut window).select_nothing();
+            frames(&mut window, 2);
+            click(&mut window, (words.kind_name)(kind));
+            frames(&mut window, 2);
+            assert!(game(&mut window).maker.editor.problem.is_none(), "{kind:?}");
+        }
+        let scene = game(&mut window).maker.draft.scene().clone();
+        assert!(
+            scene
+                .game
+                .as_ref()
+                .is_some_and(|game| game.basket.is_some())
+        );
+        assert!(!scene.joint.is_empty() && !scene.field.is_empty());
+        // Drags the body, and takes it back.
+        game(&mut window).select_nothing();
+        frames(&mut window, 2);
+        let from = place_of_item(&mut window, Item::Body(0));
+        drag(&mut window, &[from, from + vec2(40.0, -60.0)]);
+        let moved = game(&mut window).maker.draft.scene().body[0].at;
+        assert_ne!(moved, scene.body[0].at);
+        click(&mut window, words.undo);
+        assert_eq!(game(&mut window).maker.draft.scene(), &scene);
+        // Plays it.
+        click(&mut window, words.test);
+        assert_eq!(screen(&window), Screen::Play);
+        frames(&mut window, 30);
+        press(&mut window, Key::Escape);
+        click(&mut window, words.to_editor);
+        frames(&mut window, 60);
+        assert_eq!(screen(&window), Screen::Editor);
+        assert_eq!(game(&mut window).maker.draft.scene(), &scene);
+        // Keeps and sends it.
+        click(&mut window, words.finish);
+        game(&mut window).name_draft("Mine");
+        game(&mut window).settings.maker_name = "Mika\u{202e}".into();
+        click(&mut window, words.keep);
+        wait_for_files(&mut window);
+        let kept = game(&mut window)
+            .levels
+            .last()
+            .expect("there are levels")
+            .clone();
+        assert_eq!(language.of(&kept.game().name), "Mine");
+        assert_eq!(kept.game().made_by.as_deref(), Some("Mika"));
+        let stored = game(&mut window)
+            .files
+            .level_text(&kept.id)
+            .expect("it is stored");
+        let read = Level::read("read.toml", stored.as_bytes(), &|_| unreachable!()).unwrap();
+        assert_eq!(read.scene(), kept.scene());
+        let sent = kept.link().unwrap();
+        let Ok(Link::Level(level)) = Link::read(&sent) else {
+            panic!("{sent}");
+        };
+        assert_eq!(level.scene(), kept.scene());
+        assert!(sent.len() <= 2500, "{}", sent.len());
+        drop(window);
+        let mut again = open(Files::in_folder(folder.path()), SIZES[0], 1.0);
+        wait_for_files(&mut again);
+        let game = game(&mut again);
+        assert!(
+            game.levels
+                .iter()
+                .any(|level| level.scene() == kept.scene())
+        );
+    }
+}
+
+#[test]
+fn shipped_level_is_changed_and_removed_with_undo() {
+    let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+    game(&mut window).clock = slow_clock();
+    start(&mut window, "classic");
+    press(&mut window, Key::Escape);
+    click(&mut window, "Change this level");
+    assert_eq!(screen(&window), Screen::Editor);
+    let classic = Level::open("classic").unwrap();
+    assert_eq!(game(&mut window).maker.draft.scene(), classic.scene());
+    let (_, text) = tamaire_play::level::built_in()
+        .find(|(id, _)| *id == "classic")
+        .unwrap();
+    assert_eq!(game(&mut window).maker.draft.text(), text);
+    let at = place_of_item(&mut window, Item::Body(0));
+    drag(&mut window, &[at, at + vec2(30.0, 0.0)]);
+    click(&mut window, "Keep and send");
+    click(&mut window, "Keep");
+    let own = game(&mut window).levels.last().unwrap().clone();
+    assert_ne!(own.scene(), classic.scene());
+    assert_eq!(own.game().changed_from.as_deref(), Some("Classic"));
+    game(&mut window).go(Screen::Levels);
+    frames(&mut window, 3);
+    let name = own.game().name.en.clone();
+    click(&mut window, &format!("Remove from list: {name}"));
+    assert!(
+        !game(&mut window)
+            .levels
+            .iter()
+            .any(|level| level.id == own.id)
+    );
+    click(&mut window, &format!("Bring back {name}"));
+    assert!(
+        game(&mut window)
+            .levels
+            .iter()
+            .any(|level| level.id == own.id)
+    );
+}
+
+#[test]
+fn selection_is_copied_turned_scaled_and_removed_by_buttons() {
+    let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+    game(&mut window).edit_blank(2);
+    game(&mut window).add_thing(Kind::Wall);
+    frames(&mut window, 2);
+    let before = game(&mut window).maker.draft.scene().clone();
+    click(&mut window, "Copy");
+    click(&mut window, "Paste");
+    let count = game(&mut window).maker.draft.scene().obstacle.len();
+    assert_eq!(count, before.obstacle.len() + 1);
+    click(&mut window, "Larger");
+    click(&mut window, "Turn left");
+    frames(&mut window, 2);
+    click(&mut window, "Remove");
+    assert_eq!(
+        game(&mut window).maker.draft.scene().obstacle.len(),
+        before.obstacle.len()
+    );
+    for _ in 0..4 {
+        game(&mut window).undo_edit(false);
+    }
+    assert_eq!(game(&mut window).maker.draft.scene(), &before);
+    // The last body stays.
+    game(&mut window).select_all();
+    game(&mut window).remove_selection();
+    let scene = game(&mut window).maker.draft.scene();
+    assert!(scene.body.len() == 1 && scene.hand.len() == 1);
+    frames(&mut window, 2);
+}
+
+#[test]
+fn finger_draws_and_builds_at_the_size_of_a_phone() {
+    let mut window = open(Files::nowhere(), SIZES[1], 1.0);
+    click(&mut window, "Draw");
+    let rect: Rect = window.get_by_label("Paper").rect();
+    let at = |x: f32, y: f32| rect.min + vec2(x, y) * rect.size();
+    touch(&mut window, 0, TouchPhase::Start, at(0.2, 0.5));
+    for k in 1..10 {
+        touch(
+            &mut window,
+            0,
+            TouchPhase::Move,
+            at(0.2 + 0.06 * k as f32, 0.5),
+        );
+    }
+    touch(&mut window, 0, TouchPhase::End, at(0.74, 0.5));
+    frames(&mut window, 2);
+    let drawn = game(&mut window).maker.paper.solid_count();
+    assert!(drawn > 100, "{drawn}");
+    click(&mut window, "Drop it!");
+    press(&mut window, Key::Escape);
+    click(&mut window, "Build a level");
+    assert_eq!(screen(&window), Screen::Editor);
+    game(&mut window).add_thing(Kind::Basket);
+    frames(&mut window, 2);
+    assert!(game(&mut window).maker.draft.level().is_ok());
+}
+
+#[test]
+fn making_looks_as_in_the_pictures() {
+    let mut results = egui_kittest::SnapshotResults::new();
+    for (size, tag) in SIZES.into_iter().zip(["", "upright_"]) {
+        let mut window = open(Files::nowhere(), size, 1.0);
+        game(&mut window).settings.reduced_motion = true;
+        game(&mut window).clock = slow_clock();
+        game(&mut window).open_paper();
+        frames(&mut window, 2);
+        draw(&mut window, "Paper", &ring());
+        game(&mut window).maker.crayon = 5;
+        draw(&mut window, "Paper", &[[0.35, 0.4], [0.4, 0.42]]);
+        game(&mut window).maker.crayon = 3;
+        draw(&mut window, "Paper", &[[0.1, 0.1], [0.3, 0.1]]);
+        window.hover_at(pos2(0.0, 0.0));
+        crate::pictures::pictures(&mut window, &format!("{tag}paper"));
+        game(&mut window)
+            .maker
+            .make_solid(tamaire_maker::drawing::Drawing::puffed);
+        crate::pictures::pictures(&mut window, &format!("{tag}block"));
+        start(&mut window, "lever");
+        game(&mut window).edit_current();
+        frames(&mut window, 3);
+        game(&mut window).select(Item::Body(0));
+        crate::pictures::pictures(&mut window, &format!("{tag}editor"));
+        game(&mut window).select_nothing();
+        game(&mut window).go(Screen::Properties);
+        crate::pictures::pictures(&mut window, &format!("{tag}properties"));
+        game(&mut window).go(Screen::Editor);
+        game(&mut window).go(Screen::Finish);
+        frames(&mut window, 2);
+        crate::pictures::pictures(&mut window, &format!("{tag}finish"));
+        results.extend(window.take_snapshot_results());
+    }
+}
