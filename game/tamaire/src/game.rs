@@ -47,6 +47,7 @@ pub use sharing::{MOST_NAME, credits};
 pub use shelf::{RoundDetails, SavedRound, SavedRounds};
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use tamaire_maker::drawing::PAPER;
 use tamaire_play::daily::{is_daily, level_of};
 use tamaire_play::level::built_in;
 use tamaire_play::{Assist, Level, Playback, Replay, ReplayError};
@@ -87,8 +88,8 @@ pub struct Game {
     pub dialog: Dialog,
     /// Saved rounds.
     pub shelf: SavedRounds,
-    /// Round received through a link, and its level.
-    pub offered: Option<(Arc<Replay>, Arc<Level>)>,
+    /// Level received through a link, with the round of it that was sent, if any.
+    pub offered: Option<(Option<Arc<Replay>>, Arc<Level>)>,
     /// Text to copy to the clipboard.
     pub copied: Option<String>,
     /// Messages to the player.
@@ -459,6 +460,13 @@ impl Game {
     pub fn open(&mut self, given: OpenRequest) {
         match given {
             OpenRequest::Level(Ok(level)) => self.offer(*level),
+            OpenRequest::Body(name, bytes) if self.screen() == Screen::Paper => {
+                self.draw_picture(name, bytes, PAPER);
+            }
+            OpenRequest::Body(name, bytes) => match OpenRequest::level_around(&name, &bytes) {
+                Ok(level) => self.offer(level),
+                Err(error) => self.notify((self.words().level_error)(&error)),
+            },
             OpenRequest::Level(Err(error)) => self.notify((self.words().level_error)(&error)),
             OpenRequest::Replay(name, replay) => {
                 let outcome = replay.and_then(|replay| self.watch(Arc::from(replay)));
@@ -502,10 +510,7 @@ impl Game {
         self.notify(format!("{name}: {reason}"));
     }
 
-    fn offer(&mut self, mut level: Level) {
-        if self.screen() == Screen::Paper && self.draw_from(&level) {
-            return;
-        }
+    pub(super) fn offer(&mut self, mut level: Level) {
         let notes = level.scene().notes().iter();
         let notes: Vec<String> = notes.map(self.words().import_note).collect();
         let known = self.levels.iter().position(|known| **known == level);
@@ -601,6 +606,8 @@ impl Game {
                 self.pass_ticks(DEFAULT_TICK);
                 self.bout.effects.advance(DEFAULT_TICK);
             }
+            (Screen::Play, Action::Make) if self.is_test() => self.end_test(),
+            (Screen::Play, Action::Make) if self.is_with_drawing() => self.leave_round(),
             (Screen::Play, Action::Join) if self.takes_two() => self.controls.players.join(seat),
             _ => {}
         }
@@ -641,7 +648,7 @@ impl Game {
     /// Whether the round is visible, even if dimmed. A hidden round stands still and is silent.
     pub fn is_seen(&self) -> bool {
         use Screen::{
-            Ending, Finish, Forces, Levels, Licences, Paper, Properties, Replays, Settings, Toolbox,
+            Ending, Finish, Forces, Levels, Licences, Paper, Replays, Settings, Toolbox,
         };
         !matches!(
             self.screen(),
@@ -654,7 +661,6 @@ impl Game {
                 | Toolbox
                 | Paper
                 | Finish
-                | Properties
         )
     }
 

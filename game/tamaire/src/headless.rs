@@ -159,6 +159,9 @@ fn try_play(options: &Options) -> Result<(), HeadlessError> {
         (Some(file), ..) => match OpenRequest::at(file) {
             OpenRequest::Link(link) => try_link(&link, options),
             OpenRequest::Level(level) => try_bot(*level?, options),
+            OpenRequest::Body(name, bytes) => {
+                try_bot(OpenRequest::level_around(&name, &bytes)?, options)
+            }
             OpenRequest::Replay(_, replay) => {
                 let replay = replay.map_err(|error| not_read(file, error))?;
                 check(file, *replay, options)

@@ -339,11 +339,19 @@ impl Level {
         start.map_or(&[], |start| start.2.as_slice())
     }
 
-    /// Returns whether a body was made from a picture that is not part of the game.
+    /// Returns whether a body was drawn, or made from a picture that is not part of the game.
     pub fn is_drawing(&self, body: usize) -> bool {
-        let is_file = |body: &BodyText| body.file.is_some();
+        let is_drawn = |body: &BodyText| body.file.is_some() || body.voxels.is_some();
         let is_built_in = built_in().any(|(id, _)| id == self.id);
-        self.scene.dim == 2 && !is_built_in && self.scene.body.get(body).is_some_and(is_file)
+        self.scene.dim == 2 && !is_built_in && self.scene.body.get(body).is_some_and(is_drawn)
+    }
+
+    /// Returns the number of solid voxels of all bodies at the start.
+    pub(crate) fn solid_voxels(&self) -> usize {
+        match self.scene.dim {
+            2 => self.start::<Dim2>().map_or(0, |start| solid_in(&start.0)),
+            _ => self.start::<Dim3>().map_or(0, |start| solid_in(&start.0)),
+        }
     }
 
     /// Returns for how many players the level has hands.
@@ -501,6 +509,12 @@ fn attribute_to_file(file: &str, error: LevelError) -> LevelError {
         }
         error => error,
     }
+}
+
+fn solid_in<D: Dim>(world: &World<D>) -> usize {
+    { world.soft_bodies() }
+        .map(|(_, body)| body.grid().solid_count())
+        .sum()
 }
 
 fn most_solid<D: Dim>(scene: &Scene) -> usize {

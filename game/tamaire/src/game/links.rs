@@ -4,7 +4,7 @@ use super::{Game, Screen};
 use crate::platform::address_of_page;
 use std::sync::Arc;
 use tamaire_play::link::{Link, LinkError, address};
-use tamaire_play::{Replay, ReplayError};
+use tamaire_play::{Level, Replay, ReplayError};
 
 impl Game {
     /// Copies a link to the round up to now to the clipboard.
@@ -32,6 +32,19 @@ impl Game {
         }
     }
 
+    fn show_offer(&mut self, replay: Option<Arc<Replay>>, level: Level) {
+        self.offered = Some((replay, Arc::new(level)));
+        self.attract();
+        self.go(Screen::Offered);
+    }
+
+    /// Plays the level that is offered, and keeps it.
+    pub fn play_offered(&mut self) {
+        if let Some((_, level)) = self.offered.take() {
+            self.offer(Level::clone(&level));
+        }
+    }
+
     /// Tells the player whether copying to the clipboard worked.
     pub fn tell_of_copy(&mut self, took: bool) {
         self.notify(match took {
@@ -40,16 +53,13 @@ impl Game {
         });
     }
 
-    /// Opens a link: a level is started, a round is offered to watch or race.
+    /// Opens a link: a level that the game has is started; another one, and a round, is offered.
     pub fn open_link(&mut self, link: &str) {
         match Link::read(link) {
-            Ok(Link::Level(level)) => self.offer(*level),
+            Ok(Link::Level(level)) if self.listed(&level).is_some() => self.offer(*level),
+            Ok(Link::Level(level)) => self.show_offer(None, *level),
             Ok(Link::Round(replay)) => match replay.level() {
-                Ok(level) => {
-                    self.offered = Some((Arc::from(replay), Arc::new(level)));
-                    self.attract();
-                    self.go(Screen::Offered);
-                }
+                Ok(level) => self.show_offer(Some(Arc::from(replay)), level),
                 Err(error) => self.notify((self.words().replay_error)(&error)),
             },
             Err(error) => self.notify((self.words().link_error)(&error)),

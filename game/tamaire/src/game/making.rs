@@ -4,15 +4,20 @@ use super::{Editor, Game, Screen};
 use crate::session::Session;
 use egui::Vec2;
 use fuwafuwa::Vec3;
-use fuwafuwa_scenes::scene::Form;
+use fuwafuwa_scenes::import::FileType;
+use fuwafuwa_scenes::scene::{BodyText, Form};
+use fuwafuwa_scenes::{Scene, SceneError};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use tamaire_maker::body;
 use tamaire_maker::check::Check;
 use tamaire_maker::draft::Draft;
 use tamaire_maker::drawing::{Brush, Drawing};
 use tamaire_maker::items::Item;
-use tamaire_maker::palette::Palette;
-use tamaire_play::{Level, Replay};
+use tamaire_maker::palette::{Palette, crayon};
+use tamaire_play::Replay;
+use tamaire_play::level::LevelError;
+use tamaire_play::playground::Stuff;
 
 /// Tool of a drawing.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -72,6 +77,8 @@ pub struct Maker {
     pub is_room_empty: bool,
     /// State of the editor.
     pub editor: Editor,
+    /// Picture that was brought to the paper: its name, its bytes, and the number of cells along its longer side.
+    pub picture: Option<(String, Vec<u8>, usize)>,
     /// Name of the level from which this one is made, unless it is the player's own.
     pub origin: Option<String>,
     /// Checks of the level, from when they are first shown.
@@ -112,6 +119,7 @@ impl Default for Maker {
             body: Some(0),
             is_room_empty: true,
             editor: Editor::default(),
+            picture: None,
             origin: None,
             check: None,
             won: None,
@@ -154,6 +162,7 @@ impl Maker {
         let (tool, crayon, radius) = (self.tool, self.crayon, pressure * self.radius());
         let (from, width) = (self.pen.unwrap_or(at), self.stamp_width());
         let begins = !std::mem::replace(&mut self.is_drawing, true);
+        self.picture = None;
         self.pen = Some(at);
         let drawing = self.drawing_mut();
         match tool {
@@ -248,25 +257,23 @@ impl Game {
         }
     }
 
-    /// Takes the body of a picture or model to the paper that is open. Returns whether the level is made from one that
-    /// fits the dimension of the drawing.
-    pub(super) fn draw_from(&mut self, level: &Level) -> bool {
-        let scene = level.scene();
-        let is_import = scene.body.first().is_some_and(|body| body.file.is_some());
-        let Ok(Some((drawing, palette))) = body::take(scene, 0) else {
-            return false;
-        };
-        let maker = &mut self.maker;
-        if !is_import || drawing.is_paper() && maker.shows_block && !maker.is_room_empty {
-            return false;
+    /// Draws a picture or model on the paper or as a block. A picture is at most `across` cells wide and high.
+    pub fn draw_picture(&mut self, name: String, bytes: Vec<u8>, across: usize) {
+        match imported(&name, &bytes, across) {
+            Ok((scene, drawing, palette)) => {
+                let maker = &mut self.maker;
+                maker.show_block(!drawing.is_paper());
+                maker.palette = palette;
+                maker.drawing_mut().replace(&drawing);
+                let notes = scene.notes().iter().map(self.words().import_note);
+                notes.for_each(|note| self.notices.tell(&note));
+                self.maker.picture = drawing.is_paper().then_some((name, bytes, across));
+            }
+            Err(error) => {
+                let error = LevelError::Scene(error);
+                self.notify((self.words().level_error)(&error));
+            }
         }
-        maker.show_block(!drawing.is_paper());
-        maker.palette = palette;
-        maker.drawing_mut().replace(&drawing);
-        for note in scene.notes().iter().map(self.words().import_note) {
-            self.notify(note);
-        }
-        true
     }
 
     /// Opens the paper with the selected body.
@@ -300,4 +307,30 @@ impl Game {
     pub fn is_with_drawing(&self) -> bool {
         self.screens.has(Screen::Paper) && self.bout.session.is_played()
     }
+}
+
+/// Returns the drawing of a picture or model, with the scene into which it was read.
+fn imported(
+    name: &str,
+    bytes: &[u8],
+    across: usize,
+) -> Result<(Scene, Drawing, Palette), SceneError> {
+    let is_model = FileType::of(bytes) == FileType::Vox;
+    let dim = if is_model { 3 } else { 2 };
+    let mut scene = Scene::read(name, &format!("dim = {dim}\nmaterial = []"), &[])?;
+    scene.material.push(crayon(Stuff::Jelly));
+    scene.body.push(BodyText {
+        file: Some(name.into()),
+        n: (!is_model).then_some(across),
+        keep_colours: (!is_model).then_some(true),
+        colours: match is_model {
+            true => (1..=u8::MAX).map(|index| (index.to_string(), 1)).collect(),
+            false => BTreeMap::new(),
+        },
+        ..BodyText::default()
+    });
+    scene.embed_files(&|_| Ok(bytes.to_vec()))?;
+    let taken = body::take(&scene, 0)?;
+    let (drawing, palette) = taken.unwrap_or((Drawing::paper(), Palette::default()));
+    Ok((scene, drawing, palette))
 }

@@ -29,7 +29,7 @@ pub enum Screen {
     Toolbox,
     /// Result of the round.
     Result,
-    /// A round received by a link, to watch or to race.
+    /// A level or a round received by a link.
     Offered,
     /// Settings.
     Settings,

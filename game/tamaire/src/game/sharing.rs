@@ -130,14 +130,31 @@ impl Game {
         self.notify(self.making().kept.to_string());
     }
 
+    /// Adds a copy of an own level.
+    pub fn duplicate(&mut self, index: usize) {
+        let mut level = Level::clone(&self.levels[index]);
+        let text = self.text_of(&level);
+        let Some(text) = text.or_else(|| level.text_to_keep().ok()) else {
+            return;
+        };
+        level.id = self.new_id();
+        self.files.keep_level_text(&level.id, text);
+        self.levels.push(Arc::new(level));
+    }
+
     /// Returns the id under which a level is kept: that of the own level that was changed, or a new one.
     fn free_id(&self, level: &Level) -> String {
-        let is_taken = |id: &str| self.levels.iter().any(|known| known.id == id);
         let is_own = (0..self.levels.len())
             .any(|index| self.levels[index].id == level.id && self.is_own(index));
-        if is_own {
-            return level.id.clone();
+        match is_own {
+            true => level.id.clone(),
+            false => self.new_id(),
         }
+    }
+
+    /// Returns an id that no level has.
+    fn new_id(&self) -> String {
+        let is_taken = |id: &str| self.levels.iter().any(|known| known.id == id);
         let numbered = (1..).map(|number| format!("my-level-{number}.toml"));
         let mut free = numbered.filter(|id| !is_taken(id));
         free.next().expect("there are more numbers than levels")

@@ -68,6 +68,7 @@ impl Default for Bindings {
             (Action::Slow, vec![Key::F]),
             (Action::Step, vec![Key::Period]),
             (Action::Tool, vec![Key::Space]),
+            (Action::Make, vec![Key::M]),
             (Action::Join, vec![Key::J]),
             (Action::Raise, vec![Key::Q, Key::PageUp]),
             (Action::Lower, vec![Key::Z, Key::PageDown]),
@@ -102,6 +103,7 @@ impl Default for Bindings {
             // Few sticks have more than twelve buttons. Actions that a round does not require are therefore
             // bound to the last of these buttons.
             (Action::Step, vec![pad(PadButton::LeftShoulder), stick(12)]),
+            (Action::Make, vec![pad(PadButton::Misc), stick(13)]),
             (Action::Deeper, vec![pad(PadButton::RightStick)]),
             (Action::Shallower, vec![pad(PadButton::LeftStick)]),
             // Cutting forces is not bound on pads: a child could press the button by accident, and pads only

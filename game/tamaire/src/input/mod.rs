@@ -58,6 +58,8 @@ pub enum Action {
     Step,
     /// Uses the tool of the hand while it is held, in a playground.
     Tool,
+    /// Goes back to the paper or to the editor, in a round with what the player makes.
+    Make,
     /// Lets a second player join with this device, or leave.
     Join,
     /// In 3D: raises the hand off the floor.
@@ -78,7 +80,7 @@ pub enum Action {
 
 impl Action {
     /// All actions, in the order of the settings.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Up,
         Self::Down,
         Self::Left,
@@ -90,6 +92,7 @@ impl Action {
         Self::Slow,
         Self::Step,
         Self::Tool,
+        Self::Make,
         Self::Join,
         Self::Raise,
         Self::Lower,

@@ -6,8 +6,10 @@ use tamaire_play::{Level, Replay, ReplayError};
 
 /// Level, replay or link to open, or the error of reading it.
 pub enum OpenRequest {
-    /// A level, or a picture or model converted to one.
+    /// A level.
     Level(Result<Box<Level>, LevelError>),
+    /// A picture or model, which becomes a body: its name and its bytes.
+    Body(String, Vec<u8>),
     /// A replay and its location, as text for the player.
     Replay(String, Result<Box<Replay>, ReplayError>),
     /// Link to a round or a level.
@@ -25,11 +27,21 @@ pub enum DialogResult {
 }
 
 impl OpenRequest {
+    /// Returns the level around a picture or model.
+    ///
+    /// # Errors
+    /// [`LevelError`] states the problem.
+    pub fn level_around(name: &str, bytes: &[u8]) -> Result<Level, LevelError> {
+        // Pictures and models name no other files.
+        Level::read(name, bytes, &|_| Err(std::io::ErrorKind::NotFound.into()))
+    }
+
     /// Reads a replay, level, picture or model from the bytes of a file. The content decides the type. `fetch`
     /// loads the files that a level refers to.
     pub fn read(name: &str, bytes: &[u8], fetch: Fetch) -> Self {
         match is_replay(name, bytes) {
             true => Self::Replay(name.into(), Replay::of_bytes(bytes).map(Box::new)),
+            false if Level::is_body_in(bytes) => Self::Body(name.into(), bytes.to_vec()),
             false => Self::Level(Level::read(name, bytes, fetch).map(Box::new)),
         }
     }
@@ -68,6 +80,10 @@ mod on_disk {
             let content = bytes.as_deref().unwrap_or_default();
             match is_replay(&location, content) {
                 true => Self::Replay(location.into(), replay_of(bytes).map(Box::new)),
+                false if Level::is_body_in(content) => {
+                    let name = path.file_name().unwrap_or_default().to_string_lossy();
+                    Self::Body(id_of(&name), content.to_vec())
+                }
                 false => Self::Level(level_of(path, bytes).map(Box::new)),
             }
         }

@@ -36,6 +36,9 @@ pub(super) fn show(game: &mut Game, ui: &Ui, corner: Pos2, scale: f32) -> (f32, 
         let name = (said.action)(Action::Rewind);
         row.push((Action::Rewind, name, icons::rewind));
     }
+    if game.is_test() || game.is_with_drawing() {
+        row.push((Action::Make, (said.action)(Action::Make), icons::pencil));
+    }
     let mut thumb: Vec<(Action, &str, Icon)> = Vec::new();
     if game.controls.means == InputMethod::Fingers && game.bout.session.is_played() {
         let name = |action| (said.action)(action);

@@ -322,3 +322,21 @@ pub(super) fn broom(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
         &[[-2.0, -3.0], [3.0, 2.0], [-3.0, 10.0], [-10.0, 3.0]],
     );
 }
+
+/// Draws a pencil.
+pub(super) fn pencil(painter: &Painter, at: Pos2, scale: f32, ink: Color32) {
+    polygon(
+        painter,
+        at,
+        scale,
+        ink,
+        &[[-5.0, 1.0], [5.0, -9.0], [9.0, -5.0], [-1.0, 5.0]],
+    );
+    polygon(
+        painter,
+        at,
+        scale,
+        ink,
+        &[[-6.5, 3.0], [-3.0, 6.5], [-9.0, 9.0]],
+    );
+}

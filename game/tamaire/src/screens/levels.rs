@@ -33,6 +33,7 @@ enum LevelAction {
     Play(usize),
     TakeOut(usize),
     Change(usize),
+    Copy(usize),
     New(u8),
     BringBack,
     TellLock(Lock),
@@ -126,6 +127,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         LevelAction::Play(index) => game.start(index),
         LevelAction::TakeOut(index) => game.take_out(index),
         LevelAction::Change(index) => game.edit(index),
+        LevelAction::Copy(index) => game.duplicate(index),
         LevelAction::New(dim) => game.edit_blank(dim),
         LevelAction::BringBack => game.bring_back(),
         LevelAction::ShowEnding => game.show_ending(),
@@ -247,11 +249,12 @@ fn own_buttons(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Option<Leve
     let name = game.settings.language.of(&game.levels[index].game().name);
     let (theme, said, words) = (game.theme(), game.words(), game.making());
     let mut wanted = None;
-    let size = vec2(0.5 * (wide - 8.0), SLIM);
+    let size = vec2((wide - 16.0) / 3.0, SLIM);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 8.0;
         for (text, action) in [
             (words.change, LevelAction::Change(index)),
+            (words.duplicate, LevelAction::Copy(index)),
             (said.remove_level, LevelAction::TakeOut(index)),
         ] {
             let response = plain_button(ui, &theme, text, size, ButtonStyle::Other);

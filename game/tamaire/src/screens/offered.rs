@@ -1,4 +1,4 @@
-//! Screen for a round that was opened from a link, to watch it or to race it.
+//! Screen for a level or a round that was opened from a link, to play, watch, race or change it.
 
 use super::icons;
 use super::widgets::{Act, card, column, dim_background, menu, perform};
@@ -27,7 +27,11 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 let galley = fitted(ui.painter(), text, size, BUTTON.x, ink);
                 ui.label(galley);
             };
-            line(ui, said.offered, 26.0, theme.accent);
+            let headline = match replay.is_some() {
+                true => said.offered,
+                false => game.making().level_offered,
+            };
+            line(ui, headline, 26.0, theme.accent);
             ui.add_space(8.0);
             let (rect, _) = ui.allocate_exact_size(PICTURE, Sense::hover());
             ui.painter().rect_filled(rect, 18.0, theme.paper);
@@ -40,23 +44,28 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             for text in credits(&level, game.making()) {
                 line(ui, &text, 17.0, theme.faint);
             }
-            let seconds = replay.seconds();
-            let how = match replay.outcome {
-                Some(outcome) => format!("{} {seconds:.1} s", (said.route)(outcome.route)),
-                None => format!("{seconds:.1} s"),
-            };
-            if let Some(outcome) = replay.outcome {
-                let at = Rect::from_min_size(rect.left_top(), vec2(44.0, 44.0)).center();
-                icons::route(ui.painter(), &theme, at, 14.0, outcome.route, true);
+            if let Some(replay) = &replay {
+                let seconds = replay.seconds();
+                let how = match replay.outcome {
+                    Some(outcome) => format!("{} {seconds:.1} s", (said.route)(outcome.route)),
+                    None => format!("{seconds:.1} s"),
+                };
+                if let Some(outcome) = replay.outcome {
+                    let at = Rect::from_min_size(rect.left_top(), vec2(44.0, 44.0)).center();
+                    icons::route(ui.painter(), &theme, at, 14.0, outcome.route, true);
+                }
+                line(ui, &how, 19.0, theme.faint);
             }
-            line(ui, &how, 19.0, theme.faint);
             ui.add_space(12.0);
-            let options: [(&str, Act); 4] = [
-                (said.watch, |game| take(game, Game::watch)),
-                (said.race, |game| take(game, Game::race)),
-                (game.making().change_this, change),
-                (said.back, Game::go_back),
-            ];
+            let mut options: Vec<(&str, Act)> = match replay.is_some() {
+                true => vec![
+                    (said.watch, |game| take(game, Game::watch)),
+                    (said.race, |game| take(game, Game::race)),
+                ],
+                false => vec![(said.play, Game::play_offered)],
+            };
+            options.push((game.making().change_this, change));
+            options.push((said.back, Game::go_back));
             menu(ui, &theme, BUTTON, &options)
         })
     });
@@ -71,7 +80,7 @@ fn change(game: &mut Game) {
 }
 
 fn take(game: &mut Game, act: fn(&mut Game, Arc<Replay>) -> Result<(), ReplayError>) {
-    let Some((replay, _)) = game.offered.take() else {
+    let Some((Some(replay), _)) = game.offered.take() else {
         return;
     };
     if let Err(error) = act(game, replay) {

@@ -26,8 +26,11 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
     let view = beside_cards(game, ui, view, duration);
     let view = above_toys(game, ui, view);
     let view = match game.screen() {
-        Screen::Editor => {
-            let part = super::editor::room(game, ui);
+        Screen::Editor | Screen::Properties => {
+            let part = match game.screen() {
+                Screen::Editor => super::editor::room(game, ui),
+                _ => super::editor::beside_properties(screen),
+            };
             let fitted = view_of_level(&game.bout.camera, part, &level);
             view.shrunk(fitted.scale / view.scale)
                 .displaced(part.center() - screen.center())

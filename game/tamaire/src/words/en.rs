@@ -244,6 +244,7 @@ pub(super) const WORDS: Words = Words {
         Action::Elements => "Elements",
         Action::Slow => "Slow motion",
         Action::Step => "Single step",
+        Action::Make => "Back to making",
         Action::Tool => "Use the tool (playground)",
         Action::Join => "Second player",
         Action::Raise => "Move up (3D)",

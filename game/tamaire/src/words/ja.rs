@@ -240,6 +240,7 @@ pub(super) const WORDS: Words = Words {
         Action::Elements => "要素を見る",
         Action::Slow => "スロー",
         Action::Step => "コマおくり",
+        Action::Make => "つくるのに もどる",
         Action::Tool => "道具を つかう（おすなば）",
         Action::Join => "ふたりで",
         Action::Raise => "上げる（3D）",

@@ -179,7 +179,7 @@ fn buttons_fit_into_width_of_small_windows_with_large_text() {
         let wishes = round.level().game().wish.len();
         assert!(wishes == 3 && game(&mut window).bout.won.unwrap().1);
         let screens = [Screen::Result, Screen::Paused, Screen::Title];
-        for (screen, count) in screens.into_iter().zip([8, 6, 6]) {
+        for (screen, count) in screens.into_iter().zip([8, 7, 7]) {
             for (language, _) in Language::ALL {
                 game(&mut window).settings.language = language;
                 game(&mut window).go(screen);

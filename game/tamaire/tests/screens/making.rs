@@ -7,6 +7,7 @@ use egui_kittest::kittest::Queryable;
 use tamaire::game::{DrawingTool, Screen};
 use tamaire::platform::Files;
 use tamaire::words::Language;
+use tamaire_maker::drawing::Drawing;
 use tamaire_maker::items::{Item, Kind};
 use tamaire_play::{AnyRound, Level, Link};
 
@@ -175,6 +176,26 @@ fn drawing_becomes_a_block_that_can_be_carved_and_dropped() {
 }
 
 #[test]
+fn picture_comes_to_the_paper_with_a_slider() {
+    let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+    game(&mut window).open_paper();
+    frames(&mut window, 2);
+    crate::hostile::drop_file(&mut window, level_file("cat.png"));
+    assert_eq!(screen(&window), Screen::Paper);
+    let fine = game(&mut window).maker.paper.solid_count();
+    assert!(fine > 500, "{fine}");
+    window.get_by_label("Fineness").focus();
+    frames(&mut window, 2);
+    (0..6).for_each(|_| press(&mut window, Key::ArrowLeft));
+    let coarse = game(&mut window).maker.paper.solid_count();
+    assert!(coarse < fine / 2, "{coarse} of {fine}");
+    click(&mut window, "Drop it!");
+    assert_eq!(voxels(&mut window), coarse);
+    press(&mut window, Key::M);
+    assert_eq!(screen(&window), Screen::Paper);
+}
+
+#[test]
 fn keys_and_one_switch_draw_without_a_pointer() {
     let mut window = open(Files::nowhere(), SIZES[0], 1.0);
     game(&mut window).open_paper();
@@ -307,6 +328,18 @@ fn level_is_built_tested_kept_and_sent_in_both_languages() {
         assert_eq!(level.scene(), kept.scene());
         assert!(sent.len() <= 2500, "{}", sent.len());
         drop(window);
+        // A friend sees who made it, and plays and changes it.
+        let mut friend = open(Files::nowhere(), SIZES[0], 1.0);
+        game(&mut friend).settings.language = language;
+        friend.event(Event::Paste(format!("https://example.org/play/#{sent}")));
+        frames(&mut friend, 3);
+        assert_eq!(screen(&friend), Screen::Offered);
+        friend.get_by_label(&(words.by)("Mika"));
+        click(&mut friend, language.words().play);
+        assert_eq!(screen(&friend), Screen::Play);
+        press(&mut friend, Key::Escape);
+        click(&mut friend, words.change_this);
+        assert_eq!(game(&mut friend).maker.draft.scene(), kept.scene());
         let mut again = open(Files::in_folder(folder.path()), SIZES[0], 1.0);
         wait_for_files(&mut again);
         let game = game(&mut again);
@@ -432,23 +465,32 @@ fn making_looks_as_in_the_pictures() {
         game(&mut window).maker.crayon = 3;
         draw(&mut window, "Paper", &[[0.1, 0.1], [0.3, 0.1]]);
         window.hover_at(pos2(0.0, 0.0));
-        crate::pictures::pictures(&mut window, &format!("{tag}paper"));
-        game(&mut window)
-            .maker
-            .make_solid(tamaire_maker::drawing::Drawing::puffed);
-        crate::pictures::pictures(&mut window, &format!("{tag}block"));
+        // Each language is seen on some of the screens in each orientation.
+        let picture = |window: &mut Window, language: Language, name: &str| {
+            game(window).settings.language = language;
+            frames(window, 3);
+            crate::pictures::picture(window, &format!("{tag}{name}"));
+            game(window).settings.language = Language::English;
+        };
+        let [one, other] = match tag {
+            "" => [Language::English, Language::Japanese],
+            _ => [Language::Japanese, Language::English],
+        };
+        picture(&mut window, one, "paper");
+        game(&mut window).maker.make_solid(Drawing::puffed);
+        picture(&mut window, other, "block");
         start(&mut window, "lever");
         game(&mut window).edit_current();
         frames(&mut window, 3);
         game(&mut window).select(Item::Body(0));
-        crate::pictures::pictures(&mut window, &format!("{tag}editor"));
+        picture(&mut window, one, "editor");
         game(&mut window).select_nothing();
         game(&mut window).go(Screen::Properties);
-        crate::pictures::pictures(&mut window, &format!("{tag}properties"));
+        picture(&mut window, other, "properties");
         game(&mut window).go(Screen::Editor);
         game(&mut window).go(Screen::Finish);
         frames(&mut window, 2);
-        crate::pictures::pictures(&mut window, &format!("{tag}finish"));
+        picture(&mut window, one, "finish");
         results.extend(window.take_snapshot_results());
     }
 }

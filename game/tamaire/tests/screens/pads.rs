@@ -183,7 +183,7 @@ fn plain_stick_alone_starts_round() {
         table.frames(2);
     };
     // The value of the axis is positive if the stick is tilted towards the player.
-    for name in ["Two players", "Replays"] {
+    for name in ["Draw", "Two players", "Replays"] {
         table.devices[0].axes[1] = 1.0;
         table.frames(2);
         table.devices[0].axes[1] = 0.0;

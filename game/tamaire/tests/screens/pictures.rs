@@ -37,7 +37,7 @@ const WON: Outcome = Outcome {
     torn: 0,
 };
 
-fn picture(window: &mut Window, name: &str) {
+pub fn picture(window: &mut Window, name: &str) {
     let options = SnapshotOptions::new()
         .threshold(STEP)
         .max_failed_pixels(PIXELS);

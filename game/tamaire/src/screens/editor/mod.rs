@@ -6,7 +6,7 @@ mod properties;
 mod shelf;
 
 pub(super) use finish::show as finish;
-pub(super) use properties::show as properties;
+pub(super) use properties::{beside_properties, show as properties};
 
 use super::hud;
 use super::making::{round_button, turn_back};

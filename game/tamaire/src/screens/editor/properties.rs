@@ -1,13 +1,14 @@
 //! Page with the properties of the selected thing, or of the level.
 
 use super::super::widgets::{
-    card, choice, dim_background, focus_first, header, page, page_rect, row, slider_with,
+    card, choice, focus_first, header, page, row, slider_with,
 };
 use crate::game::{Game, MOST_NAME};
 use crate::words::{Language, MakingWords, Words};
 use app_shell::Theme;
+use app_shell::theme::PAGE;
 use app_shell::widgets::{ButtonStyle, button};
-use egui::{FontId, Key, TextEdit, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{FontId, Key, Rect, TextEdit, Ui, UiBuilder, WidgetInfo, vec2};
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{
     BasketText, BodyText, FieldText, HandText, JointKindText, JointText, LayersText,
@@ -21,15 +22,38 @@ use tamaire_sound::Menu;
 
 /// Width of the page [points].
 const WIDE: f32 = 760.0;
+/// Share of a landscape window that the properties take.
+const SHARE: f32 = 0.48;
+/// Margin around the page [points].
+const MARGIN: egui::Vec2 = vec2(14.0, 10.0);
 /// Width at which a row of options has several lines [points].
 const NARROW: f32 = 550.0;
 /// Number of goals that can be set.
 const GOALS: usize = 3;
 
+/// Returns the part of the screen for the properties: the right side, or the lower part of a portrait window. The room
+/// runs in the rest, so that the properties are felt.
+fn place(screen: Rect) -> Rect {
+    match screen.width() > screen.height() {
+        true => screen.with_min_x(screen.right() - SHARE * screen.width()),
+        false => screen.with_min_y(screen.bottom() - 0.6 * screen.height()),
+    }
+}
+
+/// Returns the part of the screen beside the properties.
+pub(in crate::screens) fn beside_properties(screen: Rect) -> Rect {
+    let taken = place(screen);
+    match taken.left() > screen.left() {
+        true => screen.with_max_x(taken.left()),
+        false => screen.with_max_y(taken.top()),
+    }
+}
+
 pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
-    dim_background(ui, 255);
     let (theme, said, words) = (game.theme(), game.words(), game.making());
     let mut back = ui.input(|input| input.key_pressed(Key::Escape));
+    let place = place(ui.max_rect());
+    ui.painter().rect_filled(place, 0.0, PAGE);
     let item = match game.maker.editor.selection[..] {
         [item] => Some(item),
         _ => None,
@@ -38,8 +62,8 @@ pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
         Some(item) => (words.item_name)(item),
         None => words.level_settings.to_string(),
     };
-    let area = page_rect(ui);
-    ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
+    ui.scope_builder(UiBuilder::new().max_rect(place.shrink2(MARGIN)), |ui| {
+        ui.set_clip_rect(place);
         let response = header(ui, &theme, said.back, &title);
         focus_first(ui, &response);
         back |= response.clicked();

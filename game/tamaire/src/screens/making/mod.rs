@@ -9,10 +9,11 @@ mod tools;
 pub(super) use tools::{round as round_button, turn_back};
 
 use super::hud;
-use super::widgets::dim_background;
+use super::widgets::{dim_background, track};
 use crate::game::Game;
 use app_shell::widgets::{ButtonStyle, button};
 use egui::{Key, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
+use tamaire_maker::drawing::PAPER;
 use tamaire_sound::Menu;
 
 /// Margin around the parts of the screen [points].
@@ -23,6 +24,9 @@ const TOP: f32 = 48.0;
 const SIDE: f32 = 156.0;
 /// Height of the line below the paper [points].
 const LINE: f32 = 30.0;
+
+/// Least number of cells along the longer side of a picture.
+const LEAST_ACROSS: f32 = 12.0;
 
 /// Parts of the screen.
 struct Parts {
@@ -41,7 +45,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
         false => paper::show(game, ui, parts.paper),
         true => block::show(game, ui, parts.paper),
     }
-    told(game, ui, parts.line);
+    match game.maker.picture.is_some() && !game.maker.shows_block {
+        true => picture_slider(game, ui, parts.line),
+        false => told(game, ui, parts.line),
+    }
     tools::crayons(game, ui, parts.crayons);
     tools::show(game, ui, parts.tools);
     if leaves {
@@ -120,6 +127,26 @@ fn top(game: &mut Game, ui: &mut Ui, rect: Rect) -> bool {
     );
     tools::history(game, ui, middle);
     leaves
+}
+
+/// Shows how fine a picture is drawn. Any stroke on the paper makes it a drawing like others.
+fn picture_slider(game: &mut Game, ui: &mut Ui, rect: Rect) {
+    let Some((name, bytes, across)) = game.maker.picture.clone() else {
+        return;
+    };
+    let (theme, words) = (game.theme(), game.making());
+    let mut fine = across as f32;
+    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+        let title = words.fineness_of_picture;
+        let range = [LEAST_ACROSS, PAPER as f32];
+        let (_, asked) = track(ui, &theme, title, fine, range, 4.0, rect.width());
+        if let Some(asked) = asked {
+            fine = (asked / 4.0).round() * 4.0;
+        }
+    });
+    if fine as usize != across {
+        game.draw_picture(name, bytes, fine as usize);
+    }
 }
 
 /// Tells below the paper what may surprise: thin parts and separate pieces.
