@@ -162,6 +162,10 @@ fn try_play(options: &Options) -> Result<(), HeadlessError> {
             OpenRequest::Body(name, bytes) => {
                 try_bot(OpenRequest::level_around(&name, &bytes)?, options)
             }
+            OpenRequest::Pack(name, _) => {
+                let reason = "expected a level or a replay, found a folder or a pack of levels";
+                Err(LevelError::Unreadable(name, reason.into()).into())
+            }
             OpenRequest::Replay(_, replay) => {
                 let replay = replay.map_err(|error| not_read(file, error))?;
                 check(file, *replay, options)

@@ -15,6 +15,7 @@
 //! - [`rewind`]: time that runs back in a round
 //! - [`way`]: ways to win a level
 //! - [`daily`]: the level of the day
+//! - [`pack`]: many levels in one archive or folder
 //!
 //! A window, a bot and a replay play in the same way: they pass one [`InputFrame`] per tick to
 //! [`Round::step`] and read the resulting state. A 2D round is a `Round<Dim2>`, a 3D round a `Round<Dim3>`;
@@ -51,6 +52,7 @@ pub mod daily;
 pub mod input;
 pub mod level;
 pub mod link;
+pub mod pack;
 pub mod playground;
 pub mod replay;
 pub mod rewind;
@@ -67,6 +69,7 @@ pub use fuwafuwa_scenes::scene::{
 pub use input::{InputFrame, PLAYERS};
 pub use level::Level;
 pub use link::{Link, LinkError};
+pub use pack::Pack;
 pub use replay::{Playback, Replay, ReplayError};
 pub use rewind::Rewind;
 pub use round::{Hand, Round};

@@ -16,7 +16,7 @@ use fuwafuwa_scenes::{Recording, Scene};
 use fuwafuwa_surgery::record::Recording as Procedure;
 use std::io;
 use std::sync::Arc;
-use tamaire_play::{AnyRound, InputFrame, Level, Link, LinkError, Playback, Replay};
+use tamaire_play::{AnyRound, InputFrame, Level, Link, LinkError, Pack, Playback, Replay};
 
 pub fn scene(bytes: &[u8]) -> bool {
     let Some(mut scene) = text(bytes).and_then(|text| Scene::read("a.toml", text, &[]).ok()) else {
@@ -142,6 +142,30 @@ pub fn link(bytes: &[u8]) -> bool {
             true
         }
     }
+}
+
+/// Reads a pack. Returns whether at least one of its levels was opened.
+pub fn pack(bytes: &[u8]) -> bool {
+    let Ok(pack) = Pack::read("a.zip", bytes) else {
+        return false;
+    };
+    let text = |level: &Level| {
+        let text = level.text_to_keep();
+        (
+            level.id.clone(),
+            text.expect("a pack has no level that is too long to keep"),
+        )
+    };
+    let texts: Vec<(String, String)> = pack.levels.iter().map(text).collect();
+    if texts.is_empty() {
+        return false;
+    }
+    let again = Pack::read("a.zip", &Pack::write(&texts)).expect("what was written can be read");
+    assert!(again.refused.is_empty(), "{:?}", again.refused);
+    let again: Vec<(String, String)> = again.levels.iter().map(text).collect();
+    let scenes = |texts: Vec<(String, String)>| texts.into_iter().map(|(_, text)| text);
+    assert!(scenes(again).eq(scenes(texts)));
+    true
 }
 
 pub fn recording(bytes: &[u8]) -> bool {

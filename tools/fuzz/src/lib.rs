@@ -34,6 +34,7 @@ pub const DOORS: &[Door] = &[
     Door::new("scan", seeds::scans, doors::scan),
     Door::new("replay", seeds::replays, doors::replay),
     Door::new("link", seeds::links, doors::link),
+    Door::new("pack", seeds::packs, doors::pack),
     Door::new("recording", seeds::recordings, doors::recording),
     Door::new("procedure", seeds::procedures, doors::procedure),
     Door::new("snapshot", seeds::snapshots, doors::snapshot),

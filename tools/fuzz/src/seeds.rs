@@ -19,7 +19,7 @@ use std::io::{Cursor, Write};
 use std::sync::Arc;
 use tamaire_play::level::built_in;
 use tamaire_play::playground::{self, Change, Stuff};
-use tamaire_play::{AnyRound, InputFrame, Level, Replay};
+use tamaire_play::{AnyRound, InputFrame, Level, Pack, Replay};
 
 pub const CAT: &[u8] = include_bytes!("../../../game/tamaire_play/levels/cat.png");
 pub const PUDDING: &[u8] = include_bytes!("../../../game/tamaire_play/levels/pudding.vox");
@@ -107,6 +107,21 @@ pub fn links() -> Vec<Vec<u8>> {
         .chain(rounds)
         .map(|link| sent(&link.expect("a short link")))
         .collect()
+}
+
+/// Returns packs of small levels. As levels have a door of their own, few are enough.
+pub fn packs() -> Vec<Vec<u8>> {
+    let text = |(number, level): (usize, Level)| {
+        let text = level
+            .text_to_keep()
+            .expect("a short level is not too long to keep");
+        (format!("level-{number}.toml"), text)
+    };
+    let levels = small_levels()
+        .into_iter()
+        .filter(|level| level.scene().dim == 2);
+    let texts: Vec<(String, String)> = levels.take(3).enumerate().map(text).collect();
+    vec![Pack::write(&texts), Pack::write(&texts[..1])]
 }
 
 /// Returns the part of a link that the door `link` takes: kind and payload.

@@ -24,8 +24,8 @@ impl Dialog {
         }
         // Some systems distinguish upper and lower case here.
         let endings = [
-            "toml", "tamaire", "vox", "png", "jpg", "jpeg", "webp", "gif", "bmp", "VOX", "PNG",
-            "JPG", "JPEG", "WEBP", "GIF", "BMP",
+            "toml", "tamaire", "zip", "vox", "png", "jpg", "jpeg", "webp", "gif", "bmp", "ZIP",
+            "VOX", "PNG", "JPG", "JPEG", "WEBP", "GIF", "BMP",
         ];
         // The dialog is created on the window's thread, as some systems require, and awaited on another
         // thread.

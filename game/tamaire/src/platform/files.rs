@@ -4,7 +4,7 @@
 pub use super::keeping::Damage;
 use super::keeping::{
     RECORDS, is_aside, keep_best, merge_records, name_of_best, put_aside, read_level, save,
-    save_replay, stem_of,
+    save_packs, save_replay, stem_of,
 };
 use super::pictures::Pictures;
 use super::storage::{Entry, Kind, Nowhere, Storage};
@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use tamaire_play::{Level, Replay, ReplayError};
 
 /// Maximum number of stored levels read at the start. If there are more, only the newest are read.
-const MOST_LEVELS: usize = 100;
+pub const MOST_LEVELS: usize = 100;
 
 const SETTINGS: &str = "settings";
 /// Time without changes after which settings are written [s]. A dragged slider changes them in each frame.
@@ -213,6 +213,16 @@ impl Files {
         }
     }
 
+    /// Waits until the stored levels are read, and returns the results of the finished jobs. A browser does not allow
+    /// waiting, and reads all levels in the first frames.
+    pub fn await_levels(&mut self) -> Vec<StorageEvent> {
+        let done = match cfg!(target_family = "wasm") {
+            true => self.writer.results(),
+            false => self.writer.finish(),
+        };
+        self.news(done)
+    }
+
     /// Stores a level and replaces one with the same id.
     pub fn keep_level(&mut self, level: Arc<Level>) {
         let storage = self.storage.clone();
@@ -250,6 +260,25 @@ impl Files {
                 storage.export(Kind::Level, &id)?;
             }
             Ok(storage.location(Kind::Level, &id))
+        };
+        self.writer.write(job, JobResult::Replay);
+    }
+
+    /// Saves levels as a pack. In a browser, the player gets it as a file.
+    pub fn save_pack(&mut self, levels: Vec<Arc<Level>>) {
+        let storage = self.storage.clone();
+        let job = move || {
+            let mut texts = Vec::new();
+            for level in levels {
+                // A stored text may have remarks of its author.
+                let stored = storage.read(Kind::Level, &level.id).ok().flatten();
+                let text = match stored.and_then(|bytes| String::from_utf8(bytes).ok()) {
+                    Some(text) => text,
+                    None => level.text_to_keep().map_err(io::Error::other)?,
+                };
+                texts.push((level.id.clone(), text));
+            }
+            save_packs(&*storage, &texts)
         };
         self.writer.write(job, JobResult::Replay);
     }

@@ -1,4 +1,4 @@
-//! Storage in a folder: one file for each entry. Photos, clips and replays can be in folders of the user instead.
+//! Storage in a folder: one file for each entry. Photos, clips, replays and packs can be in folders of the user instead.
 
 use super::storage::{Entry, Kind, Storage, UpdateEntry};
 use fuwafuwa_scenes::disk::read_bytes;
@@ -25,7 +25,7 @@ pub struct Folder {
     user: UserFolders,
 }
 
-/// Folders in which the user looks for photos, clips and replays. An entry whose folder is `None`, or cannot be
+/// Folders in which the user looks for photos, clips, replays and packs. An entry whose folder is `None`, or cannot be
 /// made, is stored in the folder of the game.
 #[derive(Clone, Debug, Default)]
 pub struct UserFolders {
@@ -33,7 +33,7 @@ pub struct UserFolders {
     pub pictures: Option<PathBuf>,
     /// Folder of clips.
     pub videos: Option<PathBuf>,
-    /// Folder of replays.
+    /// Folder of replays and packs.
     pub documents: Option<PathBuf>,
 }
 
@@ -56,7 +56,7 @@ impl UserFolders {
         match kind {
             Kind::Photo => self.pictures.as_ref(),
             Kind::Clip => self.videos.as_ref(),
-            Kind::Replay => self.documents.as_ref(),
+            Kind::Replay | Kind::Pack => self.documents.as_ref(),
             Kind::Note | Kind::Level | Kind::Best => None,
         }
     }
@@ -75,6 +75,7 @@ impl Folder {
             Kind::Level => (self.own.join("levels"), "toml"),
             Kind::Replay => (self.own.join("replays"), "tamaire"),
             Kind::Best => (self.own.join("best"), "tamaire"),
+            Kind::Pack => (self.own.join("replays"), "zip"),
             Kind::Photo => (self.own.join("pictures"), "png"),
             Kind::Clip => (self.own.join("pictures"), "gif"),
         }

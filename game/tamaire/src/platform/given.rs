@@ -2,7 +2,7 @@
 
 use fuwafuwa_scenes::scene::{Fetch, extension_of};
 use tamaire_play::level::LevelError;
-use tamaire_play::{Level, Replay, ReplayError};
+use tamaire_play::{Level, Pack, Replay, ReplayError};
 
 /// Level, replay or link to open, or the error of reading it.
 pub enum OpenRequest {
@@ -12,6 +12,8 @@ pub enum OpenRequest {
     Body(String, Vec<u8>),
     /// A replay and its location, as text for the player.
     Replay(String, Result<Box<Replay>, ReplayError>),
+    /// A pack of levels: its name and its levels.
+    Pack(String, Result<Box<Pack>, LevelError>),
     /// Link to a round or a level.
     Link(String),
 }
@@ -36,12 +38,15 @@ impl OpenRequest {
         Level::read(name, bytes, &|_| Err(std::io::ErrorKind::NotFound.into()))
     }
 
-    /// Reads a replay, level, picture or model from the bytes of a file. The content decides the type. `fetch`
+    /// Reads a replay, level, picture, model or pack from the bytes of a file. The content decides the type. `fetch`
     /// loads the files that a level refers to.
     pub fn read(name: &str, bytes: &[u8], fetch: Fetch) -> Self {
         match is_replay(name, bytes) {
             true => Self::Replay(name.into(), Replay::of_bytes(bytes).map(Box::new)),
             false if Level::is_body_in(bytes) => Self::Body(name.into(), bytes.to_vec()),
+            false if Pack::is_in(bytes) => {
+                Self::Pack(name.into(), Pack::read(name, bytes).map(Box::new))
+            }
             false => Self::Level(Level::read(name, bytes, fetch).map(Box::new)),
         }
     }
@@ -62,18 +67,23 @@ mod on_disk {
     use crate::platform::storage::Kind;
     use fuwafuwa_scenes::disk::{read_bytes, reader_in};
     use fuwafuwa_scenes::import::MAX_FILE_BYTES;
+    use std::fs;
     use std::io::{self, ErrorKind};
-    use std::path::Path;
+    use std::path::{Path, PathBuf};
     use tamaire_play::level::LevelError;
     use tamaire_play::link::is_link;
-    use tamaire_play::{Level, Replay, ReplayError};
+    use tamaire_play::{Level, Pack, Replay, ReplayError, pack};
 
     impl OpenRequest {
-        /// Opens a file with a replay, level, picture or model, a built-in level by its name, or a link.
+        /// Opens a file with a replay, level, picture, model or pack, a folder with such files, a built-in level by its
+        /// name, or a link.
         pub fn at(path: &Path) -> Self {
             let location = path.to_string_lossy();
             if is_link(&location) && !path.exists() {
                 return Self::Link(location.into());
+            }
+            if path.is_dir() && Level::open(&location).is_err() {
+                return Self::Pack(location.into(), pack_in(path).map(Box::new));
             }
             let bytes = read_bytes(path, MAX_FILE_BYTES);
             // Without content, the name decides.
@@ -83,6 +93,10 @@ mod on_disk {
                 false if Level::is_body_in(content) => {
                     let name = path.file_name().unwrap_or_default().to_string_lossy();
                     Self::Body(id_of(&name), content.to_vec())
+                }
+                false if Pack::is_in(content) => {
+                    let pack = Pack::read(&location, content).map(Box::new);
+                    Self::Pack(location.into(), pack)
                 }
                 false => Self::Level(level_of(path, bytes).map(Box::new)),
             }
@@ -118,6 +132,32 @@ mod on_disk {
             &bytes,
             &reader_in(path.parent().unwrap_or(Path::new(""))),
         )
+    }
+
+    /// Reads the files directly in a folder as a pack.
+    fn pack_in(folder: &Path) -> Result<Pack, LevelError> {
+        let location = folder.to_string_lossy();
+        let unreadable =
+            |error: io::Error| LevelError::Unreadable(location.clone().into(), error.to_string());
+        let files = fs::read_dir(folder).map_err(unreadable)?.flatten();
+        let mut files: Vec<PathBuf> = files
+            .map(|file| file.path())
+            .filter(|file| file.is_file())
+            .collect();
+        files.sort();
+        let files = files.into_iter().map(|file| {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            let name = name.into_owned();
+            let read = move |most: u64| {
+                let length = file.metadata().map_or(0, |data| data.len());
+                match length > most {
+                    true => Err(pack::too_long(length)),
+                    false => read_bytes(&file, most).map_err(|error| error.to_string()),
+                }
+            };
+            (name, read)
+        });
+        Pack::gather(&location, files, &reader_in(folder))
     }
 
     /// Returns the id of a level in a file: a name that the storage accepts. A name without an extension gets

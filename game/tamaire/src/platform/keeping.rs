@@ -5,7 +5,7 @@ use crate::records::Records;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
-use tamaire_play::{Assist, Level, Replay, shortened};
+use tamaire_play::{Assist, Level, Pack, Replay, pack, shortened};
 
 /// Stored data that could not be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,6 +26,11 @@ const ASIDE: &str = ".broken-";
 const TRIES: usize = 8;
 
 pub(super) const RECORDS: &str = "records";
+
+/// Name of the first pack of the player's own levels.
+const PACK: &str = "my-levels";
+/// Maximum number of packs with this name and a number.
+const MOST_PACKS: usize = 999;
 
 /// Stores a copy of damaged data for the player. Returns the location of the copy.
 pub(super) fn put_aside(
@@ -132,6 +137,46 @@ pub(super) fn keep_best(storage: &dyn Storage, name: &str, replay: &Replay) -> i
         });
         (!stays).then(|| text.clone().into_bytes())
     })
+}
+
+/// Saves levels, each given by its id and its text, as packs. Returns the location of the last one; usually there is
+/// only one. An earlier pack with other levels stays.
+pub(super) fn save_packs(
+    storage: &dyn Storage,
+    levels: &[(String, String)],
+) -> io::Result<PathBuf> {
+    let mut place = Err(io::Error::other("there is no level to save"));
+    let mut left = levels;
+    while !left.is_empty() {
+        let (now, later) = left.split_at(pack::fitting(left).max(1));
+        place = save_pack(storage, &Pack::write(now));
+        if place.is_err() {
+            break;
+        }
+        left = later;
+    }
+    place
+}
+
+/// Saves a pack under the first name that is free or whose pack is the same.
+fn save_pack(storage: &dyn Storage, bytes: &[u8]) -> io::Result<PathBuf> {
+    let numbered = (2..=MOST_PACKS).map(|number| format!("{PACK}-{number}"));
+    let mut last = None;
+    for name in std::iter::once(PACK.to_string()).chain(numbered) {
+        let mut is_there = false;
+        let written = storage.change(Kind::Pack, &name, &mut |found| {
+            is_there = found.is_none_or(|found| found == bytes);
+            found.is_none().then(|| bytes.to_vec())
+        });
+        match written {
+            Ok(()) if is_there => return Ok(storage.location(Kind::Pack, &name)),
+            Ok(()) => {}
+            // The name may be that of a folder, or of a file that the player put there.
+            Err(error) if last.is_none() => last = Some(error),
+            Err(error) => return Err(error),
+        }
+    }
+    Err(last.unwrap_or_else(|| io::Error::other("no free name was found")))
 }
 
 /// Saves an entry under an unused name and returns its location.

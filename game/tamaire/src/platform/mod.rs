@@ -41,7 +41,7 @@ pub use breath::Yielder;
 pub use clipboard::Clipboard;
 pub use date::{local as local_date, today};
 pub use dialog::{Dialog, IS_THERE as HAS_DIALOG};
-pub use files::{Damage, Files, StorageEvent};
+pub use files::{Damage, Files, MOST_LEVELS, StorageEvent};
 pub use given::{DialogResult, OpenRequest, dropped};
 #[cfg(not(target_family = "wasm"))]
 pub use given::{level_at, replay_in};

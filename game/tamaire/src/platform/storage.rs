@@ -19,6 +19,8 @@ pub enum Kind {
     Replay,
     /// Recording of the fastest win in a level.
     Best,
+    /// Pack of levels.
+    Pack,
     /// Picture of the end of a round.
     Photo,
     /// Animation of the last seconds of a round.
@@ -33,6 +35,7 @@ impl Kind {
             Self::Level => tamaire_play::level::MAX_KEPT_BYTES,
             Self::Replay | Self::Best => tamaire_play::replay::MAX_BYTES as u64,
             Self::Photo | Self::Clip => 1 << 26,
+            Self::Pack => fuwafuwa_scenes::import::MAX_FILE_BYTES,
         }
     }
 }

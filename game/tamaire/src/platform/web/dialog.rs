@@ -13,7 +13,7 @@ pub struct Dialog(Vec<OpenRequest>);
 impl Dialog {
     /// Opens the dialog. The description is unused, since browsers show only file extensions.
     pub fn ask(&mut self, _: &str) {
-        host().pick(".toml,.tamaire,.vox,image/png,image/jpeg,image/webp,image/gif,image/bmp");
+        host().pick(".toml,.tamaire,.zip,.vox,image/png,image/jpeg,image/webp,image/gif,image/bmp");
     }
 
     /// Returns the next chosen file, if any.

@@ -143,6 +143,7 @@ fn ending(kind: Kind) -> &'static str {
         Kind::Replay | Kind::Best => "tamaire",
         Kind::Photo => "png",
         Kind::Clip => "gif",
+        Kind::Pack => "zip",
     }
 }
 
@@ -150,6 +151,7 @@ fn media(kind: Kind) -> &'static str {
     match kind {
         Kind::Photo => "image/png",
         Kind::Clip => "image/gif",
+        Kind::Pack => "application/zip",
         _ => "text/plain",
     }
 }
