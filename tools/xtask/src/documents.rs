@@ -7,7 +7,8 @@ use crate::shell::{Failure, cargo, root, show};
 use std::process::Stdio;
 
 /// Units that rustdoc takes for links.
-const UNITS: [&str; 26] = [
+const UNITS: [&str; 27] = [
+    "cells",
     "m",
     "m²",
     "m³",
