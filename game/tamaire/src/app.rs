@@ -185,7 +185,10 @@ impl App {
                     .game
                     .trial
                     .is_some_and(|trial| trial.device == device.id);
-                if in_menu && !is_tried {
+                // A stick that moves the pen does not move the focus as well; a hat does both.
+                let draws = self.game.maker.cursor.is_some()
+                    && sticks::radial_dead_zone(device.aim(), 0.3, 1.0) != [0.0; 2];
+                if in_menu && !is_tried && !draws {
                     self.press(match direction {
                         sticks::Direction::Up => Key::ArrowUp,
                         sticks::Direction::Down => Key::ArrowDown,
@@ -343,6 +346,8 @@ impl App {
             // In a menu, a navigation key does not trigger the action to which it is bound in a round.
             // Cutting the forces is the exception: this action works on every screen.
             let is_of_menu = game.screen() != Screen::Play && OF_MENUS.contains(&key);
+            // Where players draw, write and edit, letters are letters.
+            let is_of_menu = is_of_menu || game.screen().is_of_making();
             if let Some(action) =
                 action.filter(|action| !is_of_menu || *action == Action::CutForces)
             {
@@ -367,8 +372,11 @@ impl App {
             Event::Paste(text) => Some(text),
             _ => None,
         });
-        for link in pasted {
-            game.open_link(link);
+        // What is pasted while something is made is a text or a thing.
+        if !game.screen().is_of_making() {
+            for link in pasted {
+                game.open_link(link);
+            }
         }
     }
 }

@@ -14,6 +14,7 @@ mod lesson;
 mod links;
 mod making;
 mod notices;
+mod packs;
 mod public;
 mod screen;
 mod sharing;
@@ -456,7 +457,7 @@ impl Game {
     }
 
     /// Opens a file or link that was dropped onto the window or named on the command line: a level, a
-    /// picture, a model or a replay.
+    /// picture, a model, a pack of levels or a replay.
     pub fn open(&mut self, given: OpenRequest) {
         match given {
             OpenRequest::Level(Ok(level)) => self.offer(*level),
@@ -474,6 +475,7 @@ impl Game {
                     self.tell_of_replay(&name, &error);
                 }
             }
+            OpenRequest::Pack(_, pack) => self.open_pack(pack.map(|pack| *pack)),
             OpenRequest::Link(link) => self.open_link(&link),
         }
     }
@@ -647,20 +649,10 @@ impl Game {
 
     /// Whether the round is visible, even if dimmed. A hidden round stands still and is silent.
     pub fn is_seen(&self) -> bool {
-        use Screen::{
-            Ending, Finish, Forces, Levels, Licences, Paper, Replays, Settings, Toolbox,
-        };
+        use Screen::{Ending, Finish, Forces, Levels, Licences, Paper, Replays, Settings, Toolbox};
         !matches!(
             self.screen(),
-            Levels
-                | Ending
-                | Replays
-                | Settings
-                | Forces
-                | Licences
-                | Toolbox
-                | Paper
-                | Finish
+            Levels | Ending | Replays | Settings | Forces | Licences | Toolbox | Paper | Finish
         )
     }
 

@@ -188,6 +188,15 @@ impl Draft {
         }
     }
 
+    /// Returns the name in a language with which the draft began; empty without one.
+    pub fn first_name(&self, language: Language) -> &str {
+        let name = self.start.game.as_ref().map(|game| &game.name);
+        match language {
+            Language::English => name.map_or("", |name| &name.en),
+            Language::Japanese => name.and_then(|name| name.ja.as_deref()).unwrap_or_default(),
+        }
+    }
+
     /// Sets the name of the maker. `None` removes it.
     pub fn set_maker(&mut self, name: Option<String>) {
         self.change_game(|game| game.made_by = name);

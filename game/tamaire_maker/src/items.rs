@@ -25,8 +25,11 @@ pub use removal::{Dropped, Removed, remove};
 
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
-use fuwafuwa_scenes::scene::{HandText, JointAnchorText, KnifeText};
+use fuwafuwa_scenes::scene::{
+    Form, HandText, JointAnchorText, JointKindText, KnifeText, ObstacleText,
+};
 use std::collections::BTreeSet;
+use tamaire_play::playground::Stuff;
 
 /// Maximum absolute coordinate of the middle of an item [m]. It is the limit of the view of a level.
 pub const MAX_COORDINATE: f32 = 3.9;
@@ -69,6 +72,20 @@ pub fn items(scene: &Scene) -> Vec<Item> {
 }
 
 impl Item {
+    /// Returns the number of the item in its list, counted from 1.
+    pub fn number(self) -> usize {
+        let (Self::Body(index)
+        | Self::Obstacle(index)
+        | Self::Hand(index)
+        | Self::RigidBody(index)
+        | Self::Joint(index)
+        | Self::Knife(index)
+        | Self::Switch(index)
+        | Self::Field(index)
+        | Self::Basket(index)) = self;
+        index + 1
+    }
+
     /// Returns whether a scene has the item.
     pub fn is_in(self, scene: &Scene) -> bool {
         match self {
@@ -82,6 +99,48 @@ impl Item {
             Self::Field(index) => index < scene.field.len(),
             Self::Basket(index) => index < basket_count(scene),
         }
+    }
+}
+
+/// Returns the kind of an item by what it is now; `None` for a hand, and for an item that the scene does not have.
+pub fn kind_of(scene: &Scene, item: Item) -> Option<Kind> {
+    match item {
+        Item::Body(index) => scene.body.get(index).map(|body| {
+            let form = body.shape.unwrap_or(Form::Ball);
+            Kind::Body(form, Stuff::Jelly)
+        }),
+        Item::Obstacle(index) => scene.obstacle.get(index).map(kind_of_obstacle),
+        Item::Hand(_) => None,
+        Item::RigidBody(index) => scene.rigid_body.get(index).map(|_| Kind::Plank),
+        Item::Joint(index) => scene.joint.get(index).map(|joint| match joint.kind {
+            JointKindText::Rope => Kind::Rope,
+            JointKindText::Spring => Kind::Spring,
+            JointKindText::Pin => Kind::Pin,
+        }),
+        Item::Knife(index) => scene.knife.get(index).map(|_| Kind::Knife),
+        Item::Switch(index) => scene.switch.get(index).map(|_| Kind::Button),
+        Item::Field(index) => scene
+            .field
+            .get(index)
+            .map(|field| match field.acceleration {
+                Some(_) => Kind::Wind,
+                None => Kind::Planet,
+            }),
+        Item::Basket(_) => item.is_in(scene).then_some(Kind::Basket),
+    }
+}
+
+fn kind_of_obstacle(text: &ObstacleText) -> Kind {
+    let filters = text.layers.map(|layers| layers.filters);
+    match filters {
+        _ if text.angular_velocity.is_some() => Kind::Paddle,
+        _ if !text.path.is_empty() && text.switch.is_some() => Kind::Door,
+        _ if !text.path.is_empty() => Kind::Lift,
+        Some(2) => Kind::Glass,
+        Some(1) => Kind::Curtain,
+        _ if text.ball.is_some() => Kind::Ball,
+        _ if text.capsule.is_some() => Kind::Bar,
+        _ => Kind::Wall,
     }
 }
 

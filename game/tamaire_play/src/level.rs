@@ -14,7 +14,8 @@ use fuwafuwa::inspect::Hash;
 use fuwafuwa::{Dim, Dim2, Dim3, Vec3, VoxelGrid, World};
 use fuwafuwa_scenes::import::FileType;
 use fuwafuwa_scenes::scene::{
-    BodyText, Fetch, GameText, MAX_TEXT_BYTES, MotionTypeText, RigidBodyText, Scene, SceneError,
+    BodyText, Fetch, GameText, LocalizedText, MAX_TEXT_BYTES, MotionTypeText, RigidBodyText, Scene,
+    SceneError,
 };
 use std::any::Any;
 use std::io;
@@ -339,6 +340,11 @@ impl Level {
         start.map_or(&[], |start| start.2.as_slice())
     }
 
+    /// Returns whether two levels are equal except for their names, and those of their makers and origins.
+    pub fn differs_only_in_names(&self, other: &Self) -> bool {
+        self.scene == other.scene || without_names(&self.scene) == without_names(&other.scene)
+    }
+
     /// Returns whether a body was drawn, or made from a picture that is not part of the game.
     pub fn is_drawing(&self, body: usize) -> bool {
         let is_drawn = |body: &BodyText| body.file.is_some() || body.voxels.is_some();
@@ -442,6 +448,16 @@ pub(crate) fn text_of(scene: &Scene) -> String {
 pub(crate) fn without_assists(mut scene: Scene) -> Scene {
     if let Some(game) = &mut scene.game {
         game.assists.clear();
+    }
+    scene
+}
+
+/// Returns a scene without the names of the level, of its maker and of its origin, which do not affect a round.
+pub(crate) fn without_names(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    if let Some(game) = &mut scene.game {
+        game.name = LocalizedText::default();
+        (game.made_by, game.changed_from) = (None, None);
     }
     scene
 }

@@ -1,6 +1,6 @@
 //! Recorded rounds, to be stored, watched, raced and shared.
 
-use crate::level::{LevelError, has_line, stem};
+use crate::level::{LevelError, has_line, stem, without_names};
 use crate::playground::{MOST_AT_ONCE, MOST_CHANGES, TimedChange};
 use crate::round::{MAX_TICKS, start_targets};
 use crate::rules::is_zero;
@@ -296,6 +296,17 @@ impl Replay {
     pub fn is_of(&self, level: &Level) -> bool {
         self.level_hash == format!("{:016x}", level.hash())
     }
+
+    /// Returns the replay as one of `level`. `None` if the level differs in more than its names.
+    pub fn renamed(&self, level: &Level) -> Option<Self> {
+        let is_same = without_names(&self.scene) == without_names(level.scene());
+        is_same.then(|| Self {
+            level: level.id.clone(),
+            level_hash: format!("{:016x}", level.hash()),
+            scene: level.scene().clone(),
+            ..self.clone()
+        })
+    }
 }
 
 impl AnyRound {
@@ -534,6 +545,26 @@ mod tests {
         let mut playback = Playback::new(Arc::new(read)).unwrap();
         let mut steps = (0..old.ticks()).map(|_| playback.step());
         assert!(steps.any(|step| matches!(step, Err(ReplayError::OutcomeDiffers))));
+    }
+
+    #[test]
+    fn renamed_replay_plays_in_the_renamed_level_only() {
+        let replay = Replay::of(&won_after_waiting());
+        let mut scene = replay.scene.clone();
+        scene.game.as_mut().unwrap().name.en = "other".into();
+        scene.game.as_mut().unwrap().made_by = Some("Mika".into());
+        let level = Level::from_scene("other", scene.clone()).unwrap();
+        assert!(!replay.is_of(&level));
+        let renamed = replay.renamed(&level).unwrap();
+        assert!(renamed.is_of(&level));
+        let mut playback = Playback::new(Arc::new(renamed)).unwrap();
+        while !playback.is_over() {
+            playback.step().unwrap();
+        }
+        assert!(playback.round().progress().outcome.is_some());
+        scene.gravity[1] -= 1.0;
+        let harder = Level::from_scene("other", scene).unwrap();
+        assert!(replay.renamed(&harder).is_none());
     }
 
     #[test]

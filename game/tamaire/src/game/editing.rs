@@ -1,5 +1,6 @@
 //! Editing of a level: selection, drags, and the room that shows the level.
 
+use super::sharing::is_made_here;
 use super::{Game, Screen};
 use crate::session::Session;
 use fuwafuwa::Vec3;
@@ -42,6 +43,10 @@ pub struct Editor {
     clip: Option<Clip>,
     /// Whether a press adds to the selection.
     pub is_adding: bool,
+    /// Whether a drag in 3D moves things up and down.
+    pub lifts: bool,
+    /// Whether the arrow keys move the selection instead of the focus.
+    pub moves_by_keys: bool,
     /// Whether things snap to the grid and to each other.
     pub snaps: bool,
     /// Drag in progress.
@@ -99,7 +104,7 @@ impl Game {
     pub fn edit(&mut self, index: usize) {
         let level = self.levels[index].clone();
         self.edit_level(&level);
-        if self.is_own(index) {
+        if is_made_here(&level.id) {
             self.maker.origin = None;
         }
     }
@@ -108,21 +113,17 @@ impl Game {
     pub fn edit_level(&mut self, level: &Level) {
         let text = self.text_of(level);
         self.maker.draft = Draft::of_level(level, text.as_deref());
-        (self.maker.body, self.maker.is_room_empty) = (None, false);
-        (self.maker.won, self.maker.check) = (None, None);
-        self.maker.origin = Some(level.game().name.en.clone());
-        self.maker.editor.forget();
-        self.maker.editor.snaps = true;
-        self.go(Screen::Editor);
+        self.begin_editing(Some(origin_of(level)));
     }
 
     /// Opens the editor with an empty room in 2D or 3D.
     pub fn edit_blank(&mut self, dim: u8) {
         self.maker.draft = Draft::blank(dim);
-        self.maker.origin = None;
-        (self.maker.body, self.maker.is_room_empty) = (Some(0), false);
-        self.maker.editor.forget();
-        self.maker.editor.snaps = true;
+        self.begin_editing(None);
+    }
+
+    /// Goes on with the level that was left without being kept.
+    pub fn go_on_editing(&mut self) {
         self.go(Screen::Editor);
     }
 
@@ -151,10 +152,20 @@ impl Game {
 
     /// Opens the editor with the room of the drawing.
     pub fn edit_room(&mut self) {
-        self.maker.put_drawing();
-        self.maker.is_room_empty = false;
-        self.maker.editor.forget();
-        self.maker.editor.snaps = true;
+        self.maker.take_room();
+        self.begin_editing(None);
+        // The room was never kept.
+        self.maker.saved = None;
+    }
+
+    /// Opens the editor with a new draft, made from the level `origin` if that is not the player's own.
+    fn begin_editing(&mut self, origin: Option<String>) {
+        let maker = &mut self.maker;
+        (maker.won, maker.check, maker.typed_name) = (None, None, None);
+        maker.origin = origin;
+        maker.saved = Some(maker.draft.scene().clone());
+        maker.editor.forget();
+        maker.editor.snaps = true;
         self.go(Screen::Editor);
     }
 
@@ -244,9 +255,16 @@ impl Game {
         };
     }
 
+    /// Returns the name of an item of the level that is being edited.
+    pub fn item_name(&self, item: Item) -> String {
+        let kind = items::kind_of(self.maker.draft.scene(), item);
+        (self.making().item_name)(kind, item.number())
+    }
+
     /// Selects nothing.
     pub fn select_nothing(&mut self) {
         self.maker.editor.selection.clear();
+        self.maker.editor.moves_by_keys = false;
         self.maker.editor.part = EditorPart::Things;
     }
 
@@ -270,14 +288,17 @@ impl Game {
     /// Removes the selection.
     pub fn remove_selection(&mut self) {
         let selection = self.maker.editor.selection.clone();
-        let mut refused = false;
-        self.change_level(|scene| {
-            let removed = items::remove(scene, &selection);
-            refused = !removed.refused.is_empty();
-        });
+        let removed = self
+            .maker
+            .draft
+            .change(|scene| items::remove(scene, &selection));
         self.select_nothing();
-        if refused {
+        self.settle();
+        if !removed.refused.is_empty() {
             self.notify(self.making().last_one_stays.to_string());
+        }
+        if !removed.dropped.is_empty() {
+            self.notify(self.making().goal_dropped.to_string());
         }
     }
 
@@ -380,5 +401,14 @@ impl Game {
             return None;
         }
         Some(HOMEWARD * seconds)
+    }
+}
+
+/// Returns the name of a level and of its maker, as the origin of another level.
+fn origin_of(level: &Level) -> String {
+    let game = level.game();
+    match &game.made_by {
+        Some(maker) => format!("{} ({maker})", game.name.en),
+        None => game.name.en.clone(),
     }
 }

@@ -38,10 +38,20 @@ impl Game {
         self.go(Screen::Offered);
     }
 
+    /// Whether the game has a level.
+    pub fn knows(&self, level: &Level) -> bool {
+        self.listed(level).is_some()
+    }
+
     /// Plays the level that is offered, and keeps it.
     pub fn play_offered(&mut self) {
         if let Some((_, level)) = self.offered.take() {
-            self.offer(Level::clone(&level));
+            let known = self.levels.iter().position(|known| *known == level);
+            let index = known.unwrap_or_else(|| {
+                self.add_own(Level::clone(&level));
+                self.levels.len() - 1
+            });
+            self.start(index);
         }
     }
 

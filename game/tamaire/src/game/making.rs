@@ -69,18 +69,23 @@ pub struct Maker {
     is_drawing: bool,
     /// Cursor of players without a pointer [cells]; `None` while it is not used.
     pub cursor: Option<Cursor>,
-    /// Level into which the drawing goes.
+    /// Empty room into which a drawing is dropped that was begun from the title.
+    room: Draft,
+    /// Level in the editor.
     pub draft: Draft,
-    /// Index of the drawn body in the level. `None` = it becomes a new body.
-    pub body: Option<usize>,
-    /// Whether the level is an empty room, made for the drawing.
-    pub is_room_empty: bool,
+    /// Body of the level in the editor that is drawn: its index, or `None` for a new one. The outer `None` = the drawing
+    /// goes into the empty room.
+    target: Option<Option<usize>>,
     /// State of the editor.
     pub editor: Editor,
     /// Picture that was brought to the paper: its name, its bytes, and the number of cells along its longer side.
     pub picture: Option<(String, Vec<u8>, usize)>,
+    /// Name of the level as it is being typed.
+    pub typed_name: Option<String>,
     /// Name of the level from which this one is made, unless it is the player's own.
     pub origin: Option<String>,
+    /// Scene of the level when it was opened or kept last. `None` for a room that was never kept.
+    pub saved: Option<Scene>,
     /// Checks of the level, from when they are first shown.
     pub check: Option<Check>,
     /// Shortest win of the level by its maker.
@@ -115,11 +120,13 @@ impl Default for Maker {
             before_stroke: None,
             is_drawing: false,
             cursor: None,
+            room: Draft::blank(2),
             draft: Draft::blank(2),
-            body: Some(0),
-            is_room_empty: true,
+            target: None,
             editor: Editor::default(),
             picture: None,
+            typed_name: None,
+            saved: Some(Draft::blank(2).scene().clone()),
             origin: None,
             check: None,
             won: None,
@@ -193,7 +200,12 @@ impl Maker {
 
     /// Whether the drawing may become a body in 3D: it is alone, or its level is in 3D.
     pub fn may_turn_solid(&self) -> bool {
-        self.is_room_empty || self.draft.scene().dim == 3
+        self.target.is_none() || self.draft.scene().dim == 3
+    }
+
+    /// Whether the paper may be used for a body: a level in 3D takes only blocks.
+    pub fn may_drop(&self) -> bool {
+        self.target.is_none() || (self.draft.scene().dim == 3) == self.shows_block
     }
 
     /// Shows the paper or the block. A room for the drawing alone follows.
@@ -201,10 +213,6 @@ impl Maker {
         self.lift_pen();
         self.cursor = None;
         self.shows_block = shows_block;
-        let dim = if shows_block { 3 } else { 2 };
-        if self.is_room_empty && self.draft.scene().dim != dim {
-            (self.draft, self.body) = (Draft::blank(dim), Some(0));
-        }
     }
 
     /// Makes the drawing on the paper a block, and shows it.
@@ -216,39 +224,55 @@ impl Maker {
         self.show_block(true);
     }
 
-    /// Puts the drawing into the level. Returns whether anything is drawn.
+    /// Puts the drawing into the empty room, or into the level in the editor. Returns whether anything is drawn.
     pub(super) fn put_drawing(&mut self) -> bool {
         self.lift_pen();
         if self.drawing().is_empty() {
             return false;
         }
-        let [low, high] = self.draft.scene().view.map(Vec3::from);
+        let dim = if self.shows_block { 3 } else { 2 };
+        if self.target.is_none() && self.room.scene().dim != dim {
+            self.room = Draft::blank(dim);
+        }
         let (drawing, palette) = (self.drawing().clone(), self.palette.clone());
-        let before = self.body;
-        let mut put = None;
-        self.draft.change(|scene| {
-            put = body::put(scene, before, &drawing, &palette, 0.5 * (low + high));
-        });
-        self.body = put;
+        let (draft, body) = match self.target {
+            // The drawing takes the place of the body of the empty room.
+            None => (&mut self.room, Some(0)),
+            Some(body) => (&mut self.draft, body),
+        };
+        let [low, high] = draft.scene().view.map(Vec3::from);
+        let middle = 0.5 * (low + high);
+        let put = draft.change(|scene| body::put(scene, body, &drawing, &palette, middle));
+        self.target = self.target.map(|_| put);
         true
+    }
+
+    /// Makes the room with the drawing the level in the editor.
+    pub(super) fn take_room(&mut self) {
+        self.put_drawing();
+        self.draft = self.room.clone();
     }
 }
 
 impl Game {
-    /// Opens the paper.
+    /// Opens the paper for a drawing that is dropped into an empty room.
     pub fn open_paper(&mut self) {
+        self.maker.target = None;
         self.go(Screen::Paper);
     }
 
     /// Drops the drawing into the room and starts a round there.
     pub fn drop_drawing(&mut self) {
+        if !self.maker.may_drop() {
+            return self.notify(self.making().make_block_first.to_string());
+        }
         if !self.maker.put_drawing() {
             return self.notify(self.making().draw_first.to_string());
         }
-        if self.screens.has(Screen::Editor) {
+        if self.maker.target.is_some() {
             return self.go(Screen::Editor);
         }
-        match self.maker.draft.level() {
+        match self.maker.room.level() {
             Ok(level) => {
                 self.bout.camera.face_front();
                 self.begin(Session::of_people(Arc::new(level)));
@@ -286,7 +310,7 @@ impl Game {
                 let maker = &mut self.maker;
                 maker.shows_block = !drawing.is_paper();
                 *maker.drawing_mut() = drawing;
-                (maker.palette, maker.body) = (palette, Some(index));
+                (maker.palette, maker.target) = (palette, Some(Some(index)));
                 self.go(Screen::Paper);
             }
             Ok(None) => {}
@@ -299,7 +323,8 @@ impl Game {
         let maker = &mut self.maker;
         maker.shows_block = maker.draft.scene().dim == 3;
         (maker.paper, maker.block) = (Drawing::paper(), Drawing::block());
-        maker.body = None;
+        maker.palette = Palette::default();
+        maker.target = Some(None);
         self.go(Screen::Paper);
     }
 

@@ -40,6 +40,12 @@ pub enum Screen {
 }
 
 impl Screen {
+    /// Whether players draw bodies or make levels on this screen.
+    pub fn is_of_making(self) -> bool {
+        use Screen::*;
+        matches!(self, Paper | Editor | Properties | Finish)
+    }
+
     /// Whether this screen is opened from `other` and returns to it.
     fn opens_over(self, other: Self) -> bool {
         use Screen::*;

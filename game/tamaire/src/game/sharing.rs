@@ -12,8 +12,23 @@ use tamaire_play::{Level, Replay};
 
 /// Maximum length of the name of a level or of its maker [characters].
 pub const MOST_NAME: usize = 40;
+/// Beginning of the ids of levels that the player makes. Levels from elsewhere get other ids.
+const MADE_HERE: &str = "my-level-";
 /// Share of a frame of 1/60 s in which checks are computed [s].
 const BUDGET: f64 = 0.008;
+
+/// Whether a level with this id was made by the player of this game.
+pub(super) fn is_made_here(id: &str) -> bool {
+    id.starts_with(MADE_HERE)
+}
+
+/// Returns the id of a level from elsewhere.
+pub(super) fn foreign_id(id: &str) -> String {
+    match id.strip_prefix(MADE_HERE) {
+        Some(rest) => format!("sent-level-{rest}"),
+        None => id.to_string(),
+    }
+}
 
 impl Maker {
     /// Returns why the level is not finished, in words for its maker. `None` if it can be kept.
@@ -27,10 +42,14 @@ impl Maker {
         wrong.or_else(|| (!has_name).then(|| words.needs_name.to_string()))
     }
 
+    /// Returns the win of the level as it is now by its maker, even if the level has another name since.
+    fn win_of(&self, level: &Level) -> Option<Replay> {
+        self.won.as_ref()?.renamed(level)
+    }
+
     /// Returns the shortest time in which its maker has won the level as it is now [s].
     pub fn won_by_maker(&self) -> Option<f32> {
-        let level = self.draft.level().ok()?;
-        let won = self.won.as_ref().filter(|won| won.is_of(&level))?;
+        let won = self.win_of(&self.draft.level().ok()?)?;
         won.outcome.map(|outcome| outcome.seconds())
     }
 }
@@ -46,15 +65,22 @@ impl Game {
             .unwrap_or_default()
     }
 
-    /// Names the level that is being edited, in the language of the player. A level without an English name gets the
-    /// same one there.
+    /// Names the level that is being edited, in the language of the player. In the other language it gets the same name,
+    /// unless the player has given it another one there.
     pub fn name_draft(&mut self, name: &str) {
         let language = self.language_of_names();
+        let other = match language {
+            Language::English => Language::Japanese,
+            Language::Japanese => Language::English,
+        };
         let draft = &mut self.maker.draft;
-        let follows = draft.name(Language::English) == draft.name(language);
+        let follows = draft.name(other).is_empty()
+            || draft.name(other) == draft.name(language)
+            || draft.name(other) == draft.first_name(other);
         draft.set_name(language, name);
         if follows {
-            draft.set_name(Language::English, name);
+            // Without a Japanese name, the English one is shown.
+            draft.set_name(other, if other == Language::English { name } else { "" });
         }
     }
 
@@ -72,7 +98,7 @@ impl Game {
         }
         let replay = self.bout.round().replay();
         let level = self.bout.round().level();
-        let known = self.maker.won.as_ref().filter(|won| won.is_of(level));
+        let known = self.maker.win_of(level);
         if known.is_none_or(|known| replay.clock_ticks() < known.clock_ticks()) {
             self.maker.won = Some(replay);
         }
@@ -84,7 +110,8 @@ impl Game {
             self.maker.check = None;
             return;
         };
-        let is_known = { self.maker.check.as_ref() }.is_some_and(|check| **check.level() == level);
+        let is_known = { self.maker.check.as_ref() }
+            .is_some_and(|check| check.level().differs_only_in_names(&level));
         if !is_known {
             self.maker.check = Some(Check::new(Arc::new(level)));
         }
@@ -111,10 +138,10 @@ impl Game {
         self.maker.draft.level().ok()
     }
 
-    /// Keeps the level beside the shipped ones.
-    pub fn keep_draft(&mut self) {
+    /// Keeps the level beside the shipped ones. Returns whether it can be kept.
+    pub fn keep_draft(&mut self) -> bool {
         let Some(mut level) = self.finished() else {
-            return;
+            return false;
         };
         level.id = self.free_id(&level);
         self.maker.draft.set_id(&level.id);
@@ -123,11 +150,14 @@ impl Game {
         self.levels.retain(|known| known.id != level.id);
         self.levels.push(level.clone());
         self.files.keep_level_text(&level.id, text);
-        let won = self.maker.won.clone().filter(|won| won.is_of(&level));
-        if let Some(won) = won {
-            self.files.keep_best(&level, named(won, &level.id));
+        self.maker.saved = Some(level.scene().clone());
+        // From now on, this is the player's own level.
+        self.maker.origin = None;
+        if let Some(won) = self.maker.win_of(&level) {
+            self.files.keep_best(&level, won);
         }
         self.notify(self.making().kept.to_string());
+        true
     }
 
     /// Adds a copy of an own level.
@@ -144,19 +174,17 @@ impl Game {
 
     /// Returns the id under which a level is kept: that of the own level that was changed, or a new one.
     fn free_id(&self, level: &Level) -> String {
-        let is_own = (0..self.levels.len())
-            .any(|index| self.levels[index].id == level.id && self.is_own(index));
+        let is_own = self.maker.origin.is_none() && is_made_here(&level.id);
         match is_own {
             true => level.id.clone(),
             false => self.new_id(),
         }
     }
 
-    /// Returns an id that no level has.
+    /// Returns an id that no level has, not even one that was removed.
     fn new_id(&self) -> String {
-        let is_taken = |id: &str| self.levels.iter().any(|known| known.id == id);
-        let numbered = (1..).map(|number| format!("my-level-{number}.toml"));
-        let mut free = numbered.filter(|id| !is_taken(id));
+        let numbered = (1..).map(|number| format!("{MADE_HERE}{number}"));
+        let mut free = numbered.filter(|id| !self.is_taken(id));
         free.next().expect("there are more numbers than levels")
     }
 
@@ -165,9 +193,8 @@ impl Game {
         let Some(level) = self.finished() else {
             return;
         };
-        let won = self.maker.won.as_ref().filter(|won| won.is_of(&level));
         // A round that is too long for a link is left out.
-        let link = won.and_then(|won| won.link().ok());
+        let link = self.maker.win_of(&level).and_then(|won| won.link().ok());
         match link.map_or_else(|| level.link(), Ok) {
             Ok(link) => self.copied = Some(address(&address_of_page(), &link)),
             Err(error) => self.notify((self.words().link_error)(&error)),
@@ -176,21 +203,42 @@ impl Game {
 
     /// Returns the QR code of the link to the level. `None` if the level is too large for one.
     pub fn code_of_draft(&mut self) -> Option<Code> {
-        let level = self.maker.draft.level().ok()?;
+        let mut scene = self.maker.draft.scene().clone();
+        if let Some(game) = &mut scene.game {
+            let maker = cleaned(&self.settings.maker_name);
+            game.made_by = (!maker.is_empty()).then_some(maker);
+        }
+        let level = Level::from_scene(self.maker.draft.id(), scene).ok()?;
         Code::of_level(&address_of_page(), &level)
     }
 
-    /// Saves the level as a file of its own.
+    /// Whether links lead to a page, so that a phone can open their QR codes.
+    pub fn has_page(&self) -> bool {
+        !address_of_page().is_empty()
+    }
+
+    /// Keeps the level, and gives it to the player as a file or tells where its file is.
     pub fn save_draft_file(&mut self) {
-        if let Some(level) = self.finished() {
-            let text = self.maker.draft.text();
-            self.files.save_level(&self.free_id(&level), text);
+        if self.keep_draft() {
+            let (id, text) = (self.maker.draft.id().to_string(), self.maker.draft.text());
+            self.files.save_level(&id, text);
         }
     }
 
-    /// Leaves the editor. A level that was changed and not kept stays in the making until another one is opened.
+    /// Whether the level that was left in the editor has changes that were not kept.
+    pub fn has_unsaved_level(&self) -> bool {
+        let maker = &self.maker;
+        maker.saved.as_ref() != Some(maker.draft.scene())
+    }
+
+    /// Leaves the editor. A new or own level is kept. A changed copy of another level, and one that cannot be played yet,
+    /// stays in the making until another level is opened.
     pub fn leave_editor(&mut self) {
         self.end_drag();
+        let is_own = self.maker.origin.is_none();
+        if is_own && self.has_unsaved_level() && self.maker.draft.level().is_ok() {
+            self.keep_draft();
+        }
         self.screens.close(Screen::Editor);
         self.arrive();
     }
@@ -208,12 +256,6 @@ pub fn credits(level: &Level, words: &MakingWords) -> Vec<String> {
         line(&game.changed_from, words.changed_from),
     ];
     lines.into_iter().flatten().collect()
-}
-
-/// Returns a replay of the level under another name.
-fn named(mut replay: Replay, id: &str) -> Replay {
-    replay.level = id.to_string();
-    replay
 }
 
 /// Returns a name that other people chose as plain text: without control characters and without characters that change

@@ -36,6 +36,8 @@ enum LevelAction {
     Copy(usize),
     New(u8),
     BringBack,
+    GoOn,
+    SavePack,
     TellLock(Lock),
     ShowEnding,
 }
@@ -130,6 +132,8 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         LevelAction::Copy(index) => game.duplicate(index),
         LevelAction::New(dim) => game.edit_blank(dim),
         LevelAction::BringBack => game.bring_back(),
+        LevelAction::GoOn => game.go_on_editing(),
+        LevelAction::SavePack => game.save_pack(),
         LevelAction::ShowEnding => game.show_ending(),
         LevelAction::TellLock(lock) => game.notify(lock_text(game, lock)),
     }
@@ -220,7 +224,7 @@ fn locked_tile(ui: &mut Ui, game: &Game, index: usize, size: Vec2) -> Response {
     response
 }
 
-/// Shows the buttons that make a level, and the one that brings back a removed level.
+/// Shows the buttons that make a level, the one that saves all own levels, and the one that brings back a removed level.
 fn make(ui: &mut Ui, game: &Game) -> Option<LevelAction> {
     let (theme, words) = (game.theme(), game.making());
     let mut wanted = None;
@@ -237,6 +241,13 @@ fn make(ui: &mut Ui, game: &Game) -> Option<LevelAction> {
         };
         press(words.new_level, 190.0, LevelAction::New(2));
         press(words.new_level_3d, 190.0, LevelAction::New(3));
+        if game.has_own_levels() {
+            press(words.save_pack, 230.0, LevelAction::SavePack);
+        }
+        if game.has_unsaved_level() {
+            let text = (words.go_on_with)(game.draft_name());
+            press(&text, 300.0, LevelAction::GoOn);
+        }
         if let Some(text) = &bring_back {
             press(text, 300.0, LevelAction::BringBack);
         }

@@ -57,13 +57,14 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 line(ui, &how, 19.0, theme.faint);
             }
             ui.add_space(12.0);
-            let mut options: Vec<(&str, Act)> = match replay.is_some() {
-                true => vec![
-                    (said.watch, |game| take(game, Game::watch)),
-                    (said.race, |game| take(game, Game::race)),
-                ],
-                false => vec![(said.play, Game::play_offered)],
-            };
+            let mut options: Vec<(&str, Act)> = Vec::new();
+            if !game.knows(&level) {
+                options.push((said.play, Game::play_offered));
+            }
+            if replay.is_some() {
+                options.push((said.watch, |game| take(game, Game::watch)));
+                options.push((said.race, |game| take(game, Game::race)));
+            }
             options.push((game.making().change_this, change));
             options.push((said.back, Game::go_back));
             menu(ui, &theme, BUTTON, &options)

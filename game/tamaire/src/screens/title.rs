@@ -65,7 +65,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     switch_language(game, ui);
     if let Some(screen) = wanted {
         game.blip(Menu::Confirm);
-        game.go(screen);
+        match screen {
+            Screen::Paper => game.open_paper(),
+            screen => game.go(screen),
+        }
     }
 }
 

@@ -11,6 +11,7 @@ mod links;
 mod making;
 mod models;
 mod own;
+mod packs;
 mod pads;
 mod pictures;
 mod rewind;

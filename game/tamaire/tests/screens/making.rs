@@ -4,7 +4,7 @@ use crate::window::*;
 use app_shell::Clock;
 use egui::{Event, Key, PointerButton, Pos2, Rect, TouchPhase, Vec2, pos2, vec2};
 use egui_kittest::kittest::Queryable;
-use tamaire::game::{DrawingTool, Screen};
+use tamaire::game::{DrawingTool, Game, Screen};
 use tamaire::platform::Files;
 use tamaire::words::Language;
 use tamaire_maker::drawing::Drawing;
@@ -144,7 +144,7 @@ fn tools_of_the_paper_work_by_mouse() {
 
 #[test]
 fn drawing_becomes_a_block_that_can_be_carved_and_dropped() {
-    for name in ["Puff up", "Spin round", "Make a slab"] {
+    for name in ["Puff up", "Spin into a shape", "Make a slab"] {
         let mut window = open(Files::nowhere(), SIZES[0], 1.0);
         game(&mut window).open_paper();
         frames(&mut window, 2);
@@ -234,6 +234,73 @@ fn keys_and_one_switch_draw_without_a_pointer() {
     frames(&mut window, 2);
     assert!(game(&mut window).maker.paper.solid_count() > 0);
     assert!(game(&mut window).maker.cursor.is_none());
+    // Scanning goes on to the other buttons.
+    frames(&mut window, 60);
+    assert!(!window.get_by_label("Paper").is_focused());
+}
+
+#[test]
+fn names_are_typed_with_spaces_and_deleted_letters() {
+    let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+    game(&mut window).clock = slow_clock();
+    game(&mut window).edit_blank(2);
+    game(&mut window).go(Screen::Finish);
+    frames(&mut window, 3);
+    window.get_by_label("Name").focus();
+    frames(&mut window, 2);
+    for _ in 0.."My level".len() {
+        press(&mut window, Key::Backspace);
+    }
+    for letter in ["e", " ", "r", "m"] {
+        window.event(Event::Text(letter.into()));
+        frames(&mut window, 2);
+    }
+    press(&mut window, Key::Backspace);
+    assert_eq!(screen(&window), Screen::Finish);
+    assert_eq!(game(&mut window).draft_name(), "e r");
+}
+
+#[test]
+fn levels_of_two_makers_with_the_same_id_stay_apart() {
+    let made = |name: &str| {
+        let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+        game(&mut window).edit_blank(2);
+        game(&mut window).name_draft(name);
+        assert!(game(&mut window).keep_draft());
+        game(&mut window).leave_editor();
+        window
+    };
+    let [mut one, mut other] = ["one", "other"].map(made);
+    let [mine, sent] =
+        [&mut one, &mut other].map(|window| game(window).levels.last().unwrap().clone());
+    assert_eq!(mine.id, sent.id);
+    one.event(Event::Paste(format!(
+        "https://example.org/#{}",
+        sent.link().unwrap()
+    )));
+    frames(&mut one, 3);
+    click(&mut one, "Play");
+    let game = game(&mut one);
+    let ids = |game: &Game, name: &str| {
+        let named = game.levels.iter();
+        let named = named.filter(|level| level.game().name.en == name);
+        named.map(|level| level.id.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(ids(game, "one"), [mine.id.clone()]);
+    assert_eq!(ids(game, "other").len(), 1);
+    assert_ne!(ids(game, "other"), ids(game, "one"));
+    // What others have made is changed as a copy.
+    let place = game
+        .levels
+        .iter()
+        .position(|level| level.game().name.en == "other")
+        .unwrap();
+    game.edit(place);
+    game.name_draft("changed");
+    assert!(game.keep_draft());
+    let changed = game.levels.last().unwrap();
+    assert_eq!(changed.game().changed_from.as_deref(), Some("other"));
+    assert_eq!(ids(game, "other").len(), 1);
 }
 
 /// Returns a clock that goes on by a millisecond each time it is read, so that checks in the background take several

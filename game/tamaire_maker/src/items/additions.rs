@@ -81,26 +81,26 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All kinds, with a ball of jelly for the bodies.
+    /// All kinds, the most usual ones first, with a ball of jelly for the bodies.
     pub const ALL: [Self; 23] = [
         Self::Body(Form::Ball, Stuff::Jelly),
-        Self::Wall,
-        Self::Ball,
-        Self::Bar,
-        Self::Glass,
-        Self::Curtain,
         Self::Basket,
-        Self::Plank,
+        Self::Wall,
+        Self::Bar,
+        Self::Ball,
         Self::SeeSaw,
+        Self::Plank,
         Self::Rope,
         Self::Spring,
         Self::Pin,
+        Self::Button,
         Self::Door,
         Self::Lift,
         Self::Paddle,
+        Self::Glass,
+        Self::Curtain,
         Self::Wind,
         Self::Planet,
-        Self::Button,
         Self::Knife,
         Self::Saw,
         Self::SecondHand,

@@ -5,6 +5,7 @@ import { serve } from "../serve.mjs";
 import { checkBits } from "./bits.mjs";
 import * as game from "./game.mjs";
 import * as keeping from "./keeping.mjs";
+import * as making from "./making.mjs";
 import { checkSilence, checkSound } from "./sound.mjs";
 import { measureSpeed } from "./speed.mjs";
 import { checkSynth } from "./synth.mjs";
@@ -14,8 +15,8 @@ const [folder, module, ...wanted] = process.argv.slice(2);
 const site = await serve(folder);
 
 /** Tests for both browsers, by name. @type {Record<string, (browser: any, site: any) => Promise<void>>} */
-const PLAYED = { ...game, ...keeping };
-const NAMES = ["preview", "first", "play", "touch", "offline", "links", "clipboard", "drops", "lost", "pictures", "pad"]
+const PLAYED = { ...game, ...keeping, ...making };
+const NAMES = ["preview", "first", "play", "touch", "offline", "links", "clipboard", "drops", "lost", "pictures", "pad", "making"]
   .concat(["forbidden", "full", "tabs", "race", "newer"]);
 
 /** All tests. Each one gets a fresh browser. @type {[string, "chromium" | "firefox" | "node", (browser?: any) => Promise<void>][]} */

@@ -4,8 +4,8 @@ use crate::game::{Drag, EditorPart, GRID, Game};
 use app_shell::View;
 use app_shell::widgets::is_on;
 use egui::{
-    Color32, CursorIcon, EventFilter, Id, Key, Pos2, Rect, Response, Role, Sense, Shape, Stroke,
-    StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Color32, CursorIcon, EventFilter, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense,
+    Shape, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use fuwafuwa::Vec3;
 use tamaire_maker::items::snapped;
@@ -17,6 +17,8 @@ const LEAST: f32 = 26.0;
 const HANDLE: f32 = 9.0;
 /// Distance of the handle for turning above the selection [points].
 const ABOVE: f32 = 34.0;
+/// Turn of the camera by a drag [rad/point].
+const ORBIT: f32 = 0.006;
 /// Distance within which things align with each other [points].
 const REACH: f32 = 7.0;
 
@@ -24,6 +26,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, room: Rect) {
     let Some(view) = game.bout.view else {
         return;
     };
+    if view.space.is_some() {
+        look_around(game, ui, room);
+    }
     floor(game, ui, room, &view);
     let scene = game.maker.draft.scene().clone();
     let mut places: Vec<(Item, Rect)> = items::items(&scene)
@@ -44,6 +49,18 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, room: Rect) {
     guides(game, ui, room, &view);
     frame(game, ui, &view);
     problem(game, ui, room);
+}
+
+/// Turns the camera in 3D with a drag of the secondary button or of two fingers over the room.
+fn look_around(game: &mut Game, ui: &Ui, room: Rect) {
+    let by = ui.input(|input| {
+        let pointer = &input.pointer;
+        let is_over = pointer.latest_pos().is_some_and(|at| room.contains(at));
+        let turns = is_over && pointer.button_down(PointerButton::Secondary);
+        let fingers = input.multi_touch().map(|touch| touch.translation_delta);
+        fingers.unwrap_or(if turns { pointer.delta() } else { Vec2::ZERO })
+    });
+    game.bout.camera.orbit(-ORBIT * by.x, ORBIT * by.y);
 }
 
 /// Returns the box on the screen around a box in the world.
@@ -73,6 +90,19 @@ fn under(game: &Game, view: &View, at: Pos2) -> Vec3 {
     view.to_world(at, height)
 }
 
+/// Whether a drag in 3D moves things up and down instead of along the floor.
+fn lifts(game: &Game, ui: &Ui) -> bool {
+    game.maker.editor.lifts || ui.input(|input| input.modifiers.shift)
+}
+
+/// Returns the way up or down of a drag in 3D to a point of the screen [m].
+fn lifted(game: &Game, ui: &Ui, view: &View, at: Pos2) -> Vec3 {
+    let from = ui.input(|input| input.pointer.press_origin()).unwrap_or(at);
+    let middle = game.selection_box().map(|[low, high]| 0.5 * (low + high));
+    let scale = middle.map_or(view.scale, |middle| view.scale_at(middle));
+    (from.y - at.y) / scale.max(1.0) * Vec3::Y
+}
+
 /// The empty part of the room: a press selects nothing, a drag selects what is in a frame.
 fn floor(game: &mut Game, ui: &mut Ui, room: Rect, view: &View) {
     let floor = ui.interact(
@@ -94,7 +124,7 @@ fn floor(game: &mut Game, ui: &mut Ui, room: Rect, view: &View) {
 
 /// An item: a press selects it, a drag moves the selection.
 fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
-    let name = (game.making().item_name)(item);
+    let name = game.item_name(item);
     let response = ui.interact(place, Id::unique(("item", item)), Sense::click_and_drag());
     let is_selected = game.maker.editor.is_selected(item);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, &name));
@@ -114,9 +144,18 @@ fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
     if response.clicked() {
         let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
         let before = game.maker.editor.is_adding;
-        game.maker.editor.is_adding |= adds;
-        game.select(item);
-        game.maker.editor.is_adding = before;
+        // With keys, a second press takes hold of a selected item.
+        let is_by_pointer = response.clicked_by(egui::PointerButton::Primary)
+            && response.interact_pointer_pos().is_some();
+        if is_selected && !is_by_pointer {
+            game.maker.editor.moves_by_keys ^= true;
+        } else {
+            game.maker.editor.is_adding |= adds;
+            game.select(item);
+            game.maker.editor.is_adding = before;
+            game.maker.editor.moves_by_keys = is_by_pointer;
+        }
+        response.request_focus();
     }
     if response.drag_started() {
         if !is_selected {
@@ -134,15 +173,19 @@ fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
     }
 }
 
-/// Moves the selection with the arrow keys, while a selected item has the focus. Escape leaves it.
+/// Moves the selection with the arrow keys, while the player holds a selected item with the keys. Escape lets it go.
 fn by_arrows(game: &mut Game, ui: &Ui, response: &Response) {
+    let moves = game.maker.editor.moves_by_keys;
     let filter = EventFilter {
         tab: false,
-        horizontal_arrows: true,
-        vertical_arrows: true,
-        escape: true,
+        horizontal_arrows: moves,
+        vertical_arrows: moves,
+        escape: moves,
     };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    if !moves {
+        return;
+    }
     let count = |key| ui.input(|input| input.num_presses(key)) as f32;
     let by = vec2(
         count(Key::ArrowRight) - count(Key::ArrowLeft),
@@ -153,7 +196,7 @@ fn by_arrows(game: &mut Game, ui: &Ui, response: &Response) {
         game.nudge(GRID * Vec3::new(by.x, by.y, deep));
     }
     if ui.input(|input| input.key_pressed(Key::Escape)) {
-        game.select_nothing();
+        game.maker.editor.moves_by_keys = false;
     }
 }
 
@@ -180,7 +223,10 @@ fn follow(game: &mut Game, ui: &Ui, view: &View, response: &Response) {
     match drag {
         Drag::Frame(_) => {}
         Drag::Move(from) => {
-            let mut by = under(game, view, at) - from;
+            let mut by = match view.space.is_some() && lifts(game, ui) {
+                true => lifted(game, ui, view, at),
+                false => under(game, view, at) - from,
+            };
             game.maker.editor.guides.clear();
             if snaps {
                 let before = game.maker.draft.scene_before();

@@ -41,6 +41,7 @@ pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
         });
     });
     if back {
+        game.maker.typed_name = None;
         game.settle_preview();
         game.blip(Menu::Back);
         game.go_back();
@@ -51,10 +52,13 @@ pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
 fn names(game: &mut Game, ui: &mut Ui, theme: &Theme) {
     let words = game.making();
     let known = game.draft_name().to_string();
-    let mut name = known.clone();
+    let mut name = game.maker.typed_name.clone().unwrap_or(known);
+    let before = name.clone();
     write(ui, theme, words.name, &mut name);
-    if name != known {
+    if name != before {
         game.name_draft(&name);
+        // Spaces at the end stay while the player types.
+        game.maker.typed_name = Some(name);
     }
     let mut maker = game.settings.maker_name.clone();
     write(ui, theme, words.made_by, &mut maker);
@@ -113,7 +117,13 @@ fn checks(game: &Game, ui: &mut Ui, theme: &Theme) {
             line(ui, "!", words.straight_wins, theme.accent);
         }
     }
-    let (sign, text, ink) = told(findings.real_time, words.real_time);
+    if !check.level().has_basket() {
+        line(ui, "–", words.is_playground, theme.ink);
+    }
+    let (sign, text, ink) = match findings.real_time {
+        Finding::NotFound => ("!", words.not_real_time.to_string(), theme.accent),
+        finding => told(finding, words.real_time),
+    };
     line(ui, sign, &text, ink);
     if !check.is_done() {
         progress(ui, theme, check);
@@ -152,6 +162,9 @@ fn deeds(game: &mut Game, ui: &mut Ui, theme: &Theme) {
         game.save_draft_file();
     }
     ui.add_space(8.0);
+    if !game.has_page() {
+        return;
+    }
     if press(ui, theme, words.code, false) {
         game.blip(Menu::Confirm);
         game.maker.shows_code ^= true;

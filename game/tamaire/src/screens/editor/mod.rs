@@ -32,11 +32,17 @@ pub(super) fn room(game: &Game, ui: &Ui) -> Rect {
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let (screen, room) = (ui.max_rect(), room(game, ui));
+    let had_keys = game.maker.editor.moves_by_keys;
     keys(game, ui);
     canvas::show(game, ui, room);
     let leaves = top(game, ui, screen.shrink(EDGE).with_max_y(room.top() - EDGE));
     shelf::show(game, ui, screen.with_min_y(room.bottom()));
-    if leaves {
+    let is_escape = ui.input(|input| input.key_pressed(Key::Escape));
+    let is_free = game.maker.editor.selection.is_empty();
+    if is_escape && !is_free && !had_keys {
+        game.select_nothing();
+    }
+    if leaves || is_escape && is_free && !had_keys {
         game.blip(Menu::Back);
         game.leave_editor();
     }
@@ -112,9 +118,6 @@ fn top(game: &mut Game, ui: &mut Ui, rect: Rect) -> bool {
 
 /// Reads the keys of drawing programs.
 fn keys(game: &mut Game, ui: &Ui) {
-    if ui.ctx().egui_wants_keyboard_input() {
-        return;
-    }
     let pressed = |key, modifiers| ui.input_mut(|input| input.consume_key(modifiers, key));
     let command = Modifiers::COMMAND;
     let shifted = command | Modifiers::SHIFT;
@@ -143,6 +146,8 @@ fn keys(game: &mut Game, ui: &Ui) {
     });
     if copies || cuts {
         game.copy_selection();
+        // Without a text in the clipboard, pressing the keys that paste is not told to the game.
+        ui.ctx().copy_text(game.draft_name().to_string());
     }
     if cuts {
         game.remove_selection();

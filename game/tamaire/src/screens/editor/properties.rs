@@ -1,8 +1,6 @@
 //! Page with the properties of the selected thing, or of the level.
 
-use super::super::widgets::{
-    card, choice, focus_first, header, page, row, slider_with,
-};
+use super::super::widgets::{card, choice, focus_first, header, page, row, slider_with};
 use crate::game::{Game, MOST_NAME};
 use crate::words::{Language, MakingWords, Words};
 use app_shell::Theme;
@@ -59,7 +57,7 @@ pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
         _ => None,
     };
     let title = match item {
-        Some(item) => (words.item_name)(item),
+        Some(item) => game.item_name(item),
         None => words.level_settings.to_string(),
     };
     ui.scope_builder(UiBuilder::new().max_rect(place.shrink2(MARGIN)), |ui| {
@@ -76,6 +74,7 @@ pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
                     theme: &theme,
                     said,
                     words,
+                    dim: scene.dim,
                 };
                 match item {
                     Some(item) => of_item(&mut fields, &mut scene, item),
@@ -104,6 +103,7 @@ struct Fields<'a> {
     theme: &'a Theme,
     said: &'static Words,
     words: &'static MakingWords,
+    dim: u8,
 }
 
 impl Fields<'_> {
@@ -139,11 +139,16 @@ impl Fields<'_> {
     }
 
     /// Shows a slider whose highest value stands for no limit.
-    fn slide_limit(&mut self, name: &str, value: &mut Option<f32>, range: [f32; 3], unit: &str) {
+    fn slide_limit(
+        &mut self,
+        (name, without): (&str, &str),
+        value: &mut Option<f32>,
+        range: [f32; 3],
+        unit: &str,
+    ) {
         let [low, high, step] = range;
         let mut shown = value.unwrap_or(high);
         let before = shown;
-        let without = self.words.without_limit;
         slider_with(
             self.ui,
             self.theme,
@@ -157,6 +162,16 @@ impl Fields<'_> {
         );
         if shown != before {
             *value = (shown < high).then_some(shown);
+        }
+    }
+
+    /// Shows a slider for a share in percent.
+    fn slide_share(&mut self, name: &str, share: &mut f32) {
+        let mut percent = (100.0 * *share).round();
+        let before = percent;
+        self.slide(name, &mut percent, [10.0, 100.0, 1.0], " %");
+        if percent != before {
+            *share = percent / 100.0;
         }
     }
 
@@ -206,8 +221,10 @@ pub(super) fn write(ui: &mut Ui, theme: &Theme, name: &str, value: &mut String) 
                 .frame(egui::Frame::NONE)
                 .desired_width(width - 24.0);
             let response = ui.add(edit);
-            response
-                .widget_info(|| WidgetInfo::text_edit(true, value.clone(), value.clone(), name));
+            response.widget_info(|| WidgetInfo {
+                label: Some(name.into()),
+                ..WidgetInfo::text_edit(true, value.clone(), value.clone(), name)
+            });
         });
     });
     value.retain(|letter| !letter.is_control());
@@ -375,7 +392,12 @@ fn obstacle(fields: &mut Fields, text: &mut ObstacleText, switches: usize) {
     if text.path.is_empty() {
         (text.repeat, text.max_force) = (None, None);
     } else {
-        fields.slide_limit(words.force, &mut text.max_force, [20.0, 1000.0, 20.0], " N");
+        fields.slide_limit(
+            (words.force, words.without_limit),
+            &mut text.max_force,
+            [20.0, 1000.0, 20.0],
+            " N",
+        );
     }
     if text.angular_velocity.is_none() {
         (text.pivot, text.max_torque) = (None, None);
@@ -391,7 +413,8 @@ fn path(fields: &mut Fields, text: &mut ObstacleText) {
     let words = fields.words;
     let end = text.path.last().copied().unwrap_or([2.0, 0.0, 0.0, 0.0]);
     let mut changed = end;
-    for (axis, name) in words.moves_by.into_iter().enumerate() {
+    let axes = usize::from(fields.dim);
+    for (axis, name) in words.moves_by.into_iter().take(axes).enumerate() {
         fields.slide(name, &mut changed[axis + 1], [-2.0, 2.0, 0.05], " m");
     }
     let moves = changed[1..] != [0.0; 3];
@@ -442,7 +465,16 @@ fn switch_number(fields: &mut Fields, value: &mut Option<usize>, count: usize) {
 fn hand(fields: &mut Fields, text: &mut HandText) {
     let words = fields.words;
     if let Some(radius) = &mut text.radius {
-        fields.slide(fields.said.hand_size, radius, [0.03, 0.3, 0.01], " m");
+        let mut centimetres = 100.0 * *radius;
+        fields.slide(
+            fields.said.hand_size,
+            &mut centimetres,
+            [3.0, 30.0, 1.0],
+            "",
+        );
+        if (centimetres - 100.0 * *radius).abs() > 0.01 {
+            *radius = centimetres.round() / 100.0;
+        }
     }
     if !text.kinematic {
         fields.slide_or(
@@ -507,7 +539,7 @@ fn joint(fields: &mut Fields, text: &mut JointText, switches: usize) {
         );
     }
     fields.slide_limit(
-        words.breaks_at,
+        (words.breaks_at, words.never_breaks),
         &mut text.breaking_force,
         [20.0, 2000.0, 20.0],
         " N",
@@ -520,7 +552,7 @@ fn switch(fields: &mut Fields, text: &mut SwitchText) {
     let mut by = text.by.unwrap_or(SwitchedBy::Body);
     let [body, hand] = words.switched_by;
     if fields.choose(
-        words.button,
+        words.pressed_by,
         &mut by,
         &[(SwitchedBy::Body, body), (SwitchedBy::Hand, hand)],
     ) {
@@ -536,7 +568,8 @@ fn switch(fields: &mut Fields, text: &mut SwitchText) {
 fn field(fields: &mut Fields, text: &mut FieldText) {
     let words = fields.words;
     if let Some(acceleration) = &mut text.acceleration {
-        for (axis, name) in words.wind.into_iter().enumerate() {
+        let axes = usize::from(fields.dim);
+        for (axis, name) in words.wind.into_iter().take(axes).enumerate() {
             fields.slide(name, &mut acceleration[axis], [-20.0, 20.0, 0.5], "");
         }
     }
@@ -555,13 +588,18 @@ fn basket(fields: &mut Fields, scene: &mut Scene, index: usize) {
         return;
     };
     if game.basket.is_some() {
-        return fields.slide(words.share, &mut game.share, [0.1, 1.0, 0.01], "");
+        return fields.slide_share(words.share, &mut game.share);
     }
     let usual = game.share;
     let Some(text) = game.baskets.get_mut(index) else {
         return;
     };
-    fields.slide_or(words.share, &mut text.share, usual, [0.1, 1.0, 0.01], "");
+    let mut share = text.share.unwrap_or(usual);
+    let before = share;
+    fields.slide_share(words.share, &mut share);
+    if share != before {
+        text.share = Some(share);
+    }
     takes(fields, text, bodies);
 }
 
@@ -618,7 +656,7 @@ fn of_level(fields: &mut Fields, scene: &mut Scene, language: Language) {
         );
         return;
     }
-    fields.slide(words.share, &mut game.share, [0.1, 1.0, 0.01], "");
+    fields.slide_share(words.share, &mut game.share);
     fields.slide(words.hold, &mut game.hold, [0.1, 10.0, 0.1], " s");
     fields.toggle(words.alone, &mut game.alone);
     for place in 0..GOALS {

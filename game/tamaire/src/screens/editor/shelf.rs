@@ -1,7 +1,7 @@
 //! Strip below the room: things to add, and what can be done with the selection.
 
-use super::super::hud;
 use super::super::making::round_button;
+use super::super::{hud, icons};
 use super::{EDGE, GAP};
 use crate::game::{EditorPart, Game, Screen};
 use app_shell::widgets::{ButtonStyle, button};
@@ -21,6 +21,7 @@ enum Deed {
     Properties,
     Turn(f32),
     Lift(f32),
+    Nudge(usize),
     Scale(i32),
     Copy,
     Paste,
@@ -43,6 +44,14 @@ impl Deed {
         if game.maker.draft.scene().dim == 3 {
             all.extend([Self::Lift(1.0), Self::Lift(-1.0)]);
         }
+        if game.settings.scanning.is_on() {
+            let count = if game.maker.draft.scene().dim == 3 {
+                6
+            } else {
+                4
+            };
+            all.extend((0..count).map(Self::Nudge));
+        }
         all.push(Self::Copy);
         if game.can_paste() {
             all.push(Self::Paste);
@@ -58,6 +67,7 @@ impl Deed {
             Self::Properties => words.properties,
             Self::Turn(steps) => words.turn[usize::from(steps < 0.0)],
             Self::Lift(steps) => words.lift[usize::from(steps < 0.0)],
+            Self::Nudge(way) => words.nudge[way],
             Self::Scale(steps) => words.scale[usize::from(steps < 0)],
             Self::Copy => words.copy,
             Self::Paste => words.paste,
@@ -79,6 +89,10 @@ impl Deed {
                     Vec3::Z
                 };
                 game.turn_selection(axis, steps);
+            }
+            Self::Nudge(way) => {
+                let ways = [-Vec3::X, Vec3::X, -Vec3::Y, Vec3::Y, -Vec3::Z, Vec3::Z];
+                game.nudge(0.1 * ways[way]);
             }
             Self::Lift(steps) => game.nudge(0.1 * steps * Vec3::Y),
             Self::Scale(steps) => game.scale_selection(steps),
@@ -118,10 +132,14 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, rect: Rect) {
 fn modes(game: &mut Game, ui: &mut Ui, rect: Rect) {
     let (theme, words) = (game.theme(), game.making());
     let side = rect.height();
-    let switches = [
-        (words.snap, game.maker.editor.snaps),
-        (words.select_more, game.maker.editor.is_adding),
+    let editor = &game.maker.editor;
+    let mut switches = vec![
+        (words.snap, editor.snaps),
+        (words.select_more, editor.is_adding),
     ];
+    if game.maker.draft.scene().dim == 3 {
+        switches.push((words.drag_lifts, editor.lifts));
+    }
     let mut left = rect.left();
     for (index, (name, is_on)) in switches.into_iter().enumerate() {
         let place = Rect::from_min_size(pos2(left, rect.top()), Vec2::splat(side));
@@ -139,7 +157,8 @@ fn modes(game: &mut Game, ui: &mut Ui, rect: Rect) {
             game.blip(Menu::Confirm);
             match index {
                 0 => game.maker.editor.snaps ^= true,
-                _ => game.maker.editor.is_adding ^= true,
+                1 => game.maker.editor.is_adding ^= true,
+                _ => game.maker.editor.lifts ^= true,
             }
         }
         left += side + GAP;
@@ -168,7 +187,7 @@ fn modes(game: &mut Game, ui: &mut Ui, rect: Rect) {
     }
 }
 
-/// Draws the sign of a switch of the editor: a grid, or two frames.
+/// Draws the sign of a switch of the editor: a grid, two frames, or two arrows.
 fn draw_switch(
     painter: &egui::Painter,
     at: egui::Pos2,
@@ -186,12 +205,16 @@ fn draw_switch(
                 }
             }
         }
-        _ => {
+        1 => {
             for k in [-3.0, 3.0] {
                 let middle = at + scale * vec2(k, k);
                 let place = Rect::from_center_size(middle, scale * Vec2::splat(11.0));
                 painter.rect_stroke(place, 2.0, line, egui::StrokeKind::Middle);
             }
+        }
+        _ => {
+            icons::up(painter, at - scale * vec2(0.0, 4.0), 0.7 * scale, ink);
+            icons::down(painter, at + scale * vec2(0.0, 4.0), 0.7 * scale, ink);
         }
     }
 }
@@ -238,9 +261,10 @@ fn rows<T: Copy>(
         ScrollArea::horizontal().id_salt(id).show(ui, |ui| {
             ui.spacing_mut().item_spacing = Vec2::splat(GAP);
             ui.vertical(|ui| {
-                for row in options.chunks(options.len().div_ceil(count).max(1)) {
+                // Column by column, so that the first options are seen without scrolling.
+                for row in 0..count.min(options.len()) {
                     ui.horizontal(|ui| {
-                        for &(option, text) in row {
+                        for &(option, text) in options.iter().skip(row).step_by(count) {
                             if button(ui, &theme, text, size, ButtonStyle::Other).clicked() {
                                 chosen = Some(option);
                             }

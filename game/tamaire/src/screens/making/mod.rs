@@ -11,6 +11,7 @@ pub(super) use tools::{round as round_button, turn_back};
 use super::hud;
 use super::widgets::{dim_background, track};
 use crate::game::Game;
+use crate::input::InputMethod;
 use app_shell::widgets::{ButtonStyle, button};
 use egui::{Key, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 use tamaire_maker::drawing::PAPER;
@@ -160,7 +161,13 @@ fn told(game: &Game, ui: &Ui, rect: Rect) {
     } else if pieces > 1 {
         ((words.pieces)(pieces), theme.ink)
     } else if game.maker.cursor.is_some() {
-        (words.how_by_keys.to_string(), theme.ink)
+        let [by_keys, by_pad, by_switch] = words.how_to_draw;
+        let how = match game.controls.means {
+            _ if game.settings.scanning.is_on() => by_switch,
+            InputMethod::Pad | InputMethod::Stick => by_pad,
+            _ => by_keys,
+        };
+        (how.to_string(), theme.ink)
     } else {
         return;
     };

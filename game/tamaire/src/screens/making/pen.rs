@@ -77,6 +77,9 @@ fn by_keys(game: &mut Game, ui: &Ui, rect: Rect, sheet: &Response) -> Option<Mov
     let count = |key| ui.input(|input| input.num_presses(key)) as f32;
     let is_pressed = count(Key::Enter) + count(Key::Space) > 0.0;
     let Some(mut cursor) = game.maker.cursor else {
+        // The arrows move the focus again.
+        let filter = EventFilter::default();
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(sheet.id, filter));
         if is_pressed {
             game.maker.cursor = Some(Cursor {
                 at: Vec2::splat(0.5),
