@@ -479,7 +479,8 @@ impl Scene {
 
     /// Returns for each body the grid whose material numbers select the colours of its voxels, for renderers. In
     /// the world itself, a tint has the number of the material from which it differs only in its colour. `None`
-    /// for a body without tints, or with a `state`.
+    /// for a body with a `state`, and for one without tints, unless it is given by `voxels` of several materials, so
+    /// that the lines of a drawing stay sharp.
     ///
     /// # Errors
     /// Same errors as [`Scene::build`].
@@ -487,12 +488,16 @@ impl Scene {
         let materials = SceneMaterials::of(&self.material);
         let mut budget = Budget::of_scene(MAX_VOXELS);
         let bodies = self.body.iter().enumerate().map(|(index, body)| {
-            if !materials.has_tints() || body.state.is_some() {
+            let is_drawn = body.voxels.is_some();
+            if !(materials.has_tints() || is_drawn) || body.state.is_some() {
                 return Ok(None);
             }
             let grid = grid::of::<D>(body, &mut budget);
             let grid = grid.map_err(|wrong| self.origin.error(wrong.inside("body", index)))?;
-            Ok(Some(grid).filter(|grid| materials.are_tints_in(grid)))
+            let is_coloured = |grid: &VoxelGrid<D>| {
+                materials.are_tints_in(grid) || is_drawn && has_several_materials(grid)
+            };
+            Ok(Some(grid).filter(is_coloured))
         });
         bodies.collect()
     }
@@ -537,6 +542,13 @@ impl Scene {
         let expected = format!("expected 2 or 3, found {}", self.dim);
         require((2..=3).contains(&self.dim), "dim", expected)
     }
+}
+
+fn has_several_materials<D: Dim>(grid: &VoxelGrid<D>) -> bool {
+    let numbers = grid.voxels().map(|voxel| grid.material(voxel));
+    let mut solid = numbers.filter(|&number| number != 0);
+    let first = solid.next();
+    solid.any(|number| Some(number) != first)
 }
 
 fn usual_gravity() -> [f32; 3] {

@@ -73,8 +73,8 @@ pub struct Game {
     pub chosen: usize,
     /// Returns today's date, in the form 2026-11-28. `None` = there is no level of the day.
     pub calendar: Option<fn() -> String>,
-    /// Level that the player removed last, and its text.
-    removed: Option<(Arc<Level>, String)>,
+    /// Levels that the player removed, the last one last, and their texts.
+    removed: Vec<(Arc<Level>, String)>,
     /// Level of the day, which is also in [`Self::levels`].
     day: Option<Arc<Level>>,
     /// Progress of the ending.
@@ -135,7 +135,7 @@ impl Game {
             levels,
             chosen: 0,
             calendar: None,
-            removed: None,
+            removed: Vec::new(),
             day: None,
             ending: Ending::default(),
             dialog: Dialog::default(),

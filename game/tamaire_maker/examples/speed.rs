@@ -35,7 +35,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             let ended = Instant::now();
             let mut draft = Draft::blank(if drawing.is_paper() { 2 } else { 3 });
             let dropped = Instant::now();
-            draft.change(|scene| put(scene, Some(0), &drawing, &Palette::default(), Vec3::ZERO));
+            let [low, high] = draft.scene().view.map(Vec3::from);
+            let middle = 0.5 * (low + high);
+            draft.change(|scene| put(scene, Some(0), &drawing, &Palette::default(), middle));
             let mut round = AnyRound::new(Arc::new(draft.level()?));
             let report = round.step(InputFrame::default());
             assert_eq!(report.quarantined, 0, "the body moves");

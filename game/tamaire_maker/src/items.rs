@@ -16,7 +16,7 @@ mod removal;
 pub(crate) mod tests;
 
 pub use additions::{Kind, add};
-pub use arrangement::{Guide, aligned, snapped};
+pub use arrangement::{Guide, aligned, free_place, snapped};
 pub use bounds::bounds;
 pub use clip::{Clip, copy, paste};
 pub use goals::is_possible;

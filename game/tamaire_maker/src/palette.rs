@@ -17,7 +17,8 @@ impl Default for Palette {
     }
 }
 
-/// Returns the material of a crayon with its colour.
+/// Returns the material of a crayon with its colour. Jelly and biscuits are tougher than in a playground, because drawings
+/// have thin legs and tails that must bear a fall.
 pub fn crayon(stuff: Stuff) -> MaterialText {
     let colour = match stuff {
         Stuff::Jelly => [240, 110, 130],
@@ -27,9 +28,17 @@ pub fn crayon(stuff: Stuff) -> MaterialText {
         Stuff::Stone => [140, 140, 150],
         Stuff::Caramel => [176, 96, 44],
     };
+    let material = stuff.material();
+    let [strength, toughness] = match stuff {
+        Stuff::Jelly => [Some(4000.0), Some(500.0)],
+        Stuff::Biscuit => [Some(6000.0), Some(450.0)],
+        _ => [material.strength, material.toughness],
+    };
     MaterialText {
         colour: Some(colour),
-        ..stuff.material()
+        strength,
+        toughness,
+        ..material
     }
 }
 
@@ -80,6 +89,14 @@ mod tests {
             assert_eq!(palette.number_of(&crayon(stuff)), stuff.number());
         }
         assert_eq!(palette.materials().len(), Stuff::ALL.len());
+    }
+
+    #[test]
+    fn materials_of_a_new_level_are_the_crayons() {
+        for dim in [2, 3] {
+            let draft = crate::draft::Draft::blank(dim);
+            assert_eq!(draft.scene().material, Stuff::ALL.map(crayon));
+        }
     }
 
     #[test]

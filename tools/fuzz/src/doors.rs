@@ -16,6 +16,7 @@ use fuwafuwa_scenes::{Recording, Scene};
 use fuwafuwa_surgery::record::Recording as Procedure;
 use std::io;
 use std::sync::Arc;
+use tamaire_maker::draft::Draft;
 use tamaire_play::{AnyRound, InputFrame, Level, Link, LinkError, Pack, Playback, Replay};
 
 pub fn scene(bytes: &[u8]) -> bool {
@@ -43,6 +44,11 @@ pub fn level(bytes: &[u8]) -> bool {
         .expect("a short level is not too long to keep");
     let again = Level::read_kept("a.toml", text.as_bytes()).expect("what was stored can be read");
     assert_eq!(again.text_to_keep().ok(), Some(text));
+    // The editor writes the level into its text.
+    let source = std::str::from_utf8(bytes).ok();
+    let edited = Draft::of_level(&level, source).text();
+    let again = Level::read_kept("a.toml", edited.as_bytes()).expect("what was edited can be read");
+    assert_eq!(again.scene(), level.scene());
     begin(level);
     true
 }

@@ -106,6 +106,7 @@ impl Game {
         self.edit_level(&level);
         if is_made_here(&level.id) {
             self.maker.origin = None;
+            self.maker.won = self.files.best(&level);
         }
     }
 
@@ -276,10 +277,12 @@ impl Game {
         self.settle();
     }
 
-    /// Adds something in the middle of the room, and selects it.
+    /// Adds something where there is most room, and selects it.
     pub fn add_thing(&mut self, kind: Kind) {
-        let [low, high] = self.maker.draft.scene().view.map(Vec3::from);
-        self.change_and_select(|scene| items::add(scene, kind, 0.5 * (low + high)));
+        let place = items::free_place(self.maker.draft.scene());
+        self.change_and_select(|scene| items::add(scene, kind, place));
+        // The things to add stay where they are, so that a second press does not meet another button.
+        self.maker.editor.part = EditorPart::Things;
         if self.maker.editor.selection.is_empty() {
             self.notify(self.making().not_pasted.to_string());
         }
@@ -306,6 +309,7 @@ impl Game {
     pub fn copy_selection(&mut self) {
         let scene = self.maker.draft.scene();
         self.maker.editor.clip = Some(items::copy(scene, &self.maker.editor.selection));
+        self.notify(self.making().copied.to_string());
     }
 
     /// Whether something was copied that fits into this level.

@@ -47,12 +47,12 @@ impl Game {
 
     /// Returns the level that was removed last.
     pub fn removed_level(&self) -> Option<&Level> {
-        self.removed.as_ref().map(|(level, _)| level.as_ref())
+        self.removed.last().map(|(level, _)| level.as_ref())
     }
 
     /// Brings back the level that was removed last.
     pub fn bring_back(&mut self) {
-        if let Some((level, text)) = self.removed.take() {
+        if let Some((level, text)) = self.removed.pop() {
             self.files.keep_level_text(&level.id, text);
             self.levels.retain(|known| known.id != level.id);
             self.levels.push(level);
@@ -65,7 +65,7 @@ impl Game {
         let level = self.levels.remove(index);
         let text = self.text_of(&level);
         let text = text.or_else(|| level.text_to_keep().ok());
-        self.removed = text.map(|text| (level.clone(), text));
+        self.removed.extend(text.map(|text| (level.clone(), text)));
         self.files.remove_level(&level.id);
         if self.chosen >= index {
             self.chosen = self.chosen.saturating_sub(1);

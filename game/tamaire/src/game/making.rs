@@ -39,6 +39,10 @@ pub enum DrawingTool {
 pub const WIDTHS: [f32; 3] = [1.25, 2.5, 4.5];
 /// Size of a stamp in multiples of the diameter of the crayon.
 const STAMP: f32 = 4.0;
+/// Distance of a drawing from the floor when it is dropped [m].
+const ABOVE_FLOOR: f32 = 0.02;
+/// Direction from which a new block is seen: azimuth and elevation [rad].
+const FRONT: [f32; 2] = [0.6, 0.45];
 /// Cells of a block for one of the paper.
 const IN_BLOCK: f32 = 0.7;
 
@@ -115,7 +119,7 @@ impl Default for Maker {
             crayon: 1,
             tool: DrawingTool::default(),
             width: 1,
-            angles: [0.6, 0.45],
+            angles: FRONT,
             pen: None,
             before_stroke: None,
             is_drawing: false,
@@ -203,6 +207,11 @@ impl Maker {
         self.target.is_none() || self.draft.scene().dim == 3
     }
 
+    /// Whether the drawing goes into an empty room.
+    pub fn is_alone(&self) -> bool {
+        self.target.is_none()
+    }
+
     /// Whether the paper may be used for a body: a level in 3D takes only blocks.
     pub fn may_drop(&self) -> bool {
         self.target.is_none() || (self.draft.scene().dim == 3) == self.shows_block
@@ -220,6 +229,7 @@ impl Maker {
         self.lift_pen();
         if !self.paper.is_empty() {
             self.block.replace(&made(&self.paper));
+            self.angles = FRONT;
         }
         self.show_block(true);
     }
@@ -242,7 +252,15 @@ impl Maker {
         };
         let [low, high] = draft.scene().view.map(Vec3::from);
         let middle = 0.5 * (low + high);
-        let put = draft.change(|scene| body::put(scene, body, &drawing, &palette, middle));
+        let stands = self.target.is_none() || body.is_none();
+        let put = draft.change(|scene| {
+            let put = body::put(scene, body, &drawing, &palette, middle)?;
+            if stands {
+                // It stands on the floor of the room, so that it does not break in a fall.
+                scene.body[put].at[1] = low.y + ABOVE_FLOOR;
+            }
+            Some(put)
+        });
         self.target = self.target.map(|_| put);
         true
     }

@@ -94,8 +94,8 @@ impl Game {
 
     /// Whether a level has this id. Some file systems do not distinguish upper and lower case.
     pub(super) fn is_taken(&self, id: &str) -> bool {
-        let removed = self.removed_level().into_iter();
-        let known = self.levels.iter().map(Arc::as_ref).chain(removed);
+        let removed = self.removed.iter().map(|(level, _)| level);
+        let known = self.levels.iter().chain(removed);
         let mut ids = known.map(|level| level.id.to_lowercase());
         ids.any(|known| known == id.to_lowercase()) || self.files.level_text(id).is_some()
     }

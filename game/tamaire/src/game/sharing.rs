@@ -6,7 +6,7 @@ use crate::qr::Code;
 use crate::words::{MakingWords, Words};
 use std::sync::Arc;
 use tamaire_maker::check::Check;
-use tamaire_maker::draft::Language;
+use tamaire_maker::draft::{Draft, Language};
 use tamaire_play::link::address;
 use tamaire_play::{Level, Replay};
 
@@ -14,8 +14,9 @@ use tamaire_play::{Level, Replay};
 pub const MOST_NAME: usize = 40;
 /// Beginning of the ids of levels that the player makes. Levels from elsewhere get other ids.
 const MADE_HERE: &str = "my-level-";
-/// Share of a frame of 1/60 s in which checks are computed [s].
-const BUDGET: f64 = 0.008;
+/// Share of a frame in which checks are computed, and the least and most time for that [s]. On a machine that draws slowly,
+/// frames are long, and the checks get on nevertheless.
+const BUDGET: (f64, [f64; 2]) = (0.6, [0.008, 0.15]);
 
 /// Whether a level with this id was made by the player of this game.
 pub(super) fn is_made_here(id: &str) -> bool {
@@ -104,8 +105,8 @@ impl Game {
         }
     }
 
-    /// Begins to check the level that is being edited, or goes on with it.
-    pub fn check_draft(&mut self) {
+    /// Begins to check the level that is being edited, or goes on with it in a frame of `seconds` [s].
+    pub fn check_draft(&mut self, seconds: f32) {
         let Ok(level) = self.maker.draft.level() else {
             self.maker.check = None;
             return;
@@ -117,7 +118,9 @@ impl Game {
         }
         let clock = self.clock.clone();
         if let Some(check) = &mut self.maker.check {
-            check.go_on(BUDGET, || clock.now());
+            let (share, [least, most]) = BUDGET;
+            let budget = (share * f64::from(seconds)).clamp(least, most);
+            check.go_on(budget, || clock.now());
         }
     }
 
@@ -164,11 +167,19 @@ impl Game {
     pub fn duplicate(&mut self, index: usize) {
         let mut level = Level::clone(&self.levels[index]);
         let text = self.text_of(&level);
-        let Some(text) = text.or_else(|| level.text_to_keep().ok()) else {
+        let mut draft = Draft::of_level(&level, text.as_deref());
+        for language in [Language::English, Language::Japanese] {
+            let name = draft.name(language).to_string();
+            if !name.is_empty() {
+                draft.set_name(language, &format!("{name} 2"));
+            }
+        }
+        let Ok(copy) = draft.level() else {
             return;
         };
+        level = copy;
         level.id = self.new_id();
-        self.files.keep_level_text(&level.id, text);
+        self.files.keep_level_text(&level.id, draft.text());
         self.levels.push(Arc::new(level));
     }
 

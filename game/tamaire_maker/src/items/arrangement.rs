@@ -75,3 +75,38 @@ fn planes(scene: &Scene, axis: usize) -> impl Iterator<Item = f32> {
     });
     across.map(move |plane| plane.point[axis])
 }
+
+/// Numbers of places on each axis that [`free_place`] compares; in 2D without the third.
+const PLACES: [usize; 3] = [7, 5, 3];
+
+/// Returns the place in the view that is farthest from all items [m], for a new one.
+pub fn free_place(scene: &Scene) -> Vec3 {
+    let boxes: Vec<[Vec3; 2]> = super::items(scene)
+        .into_iter()
+        .filter_map(|item| bounds(scene, item))
+        .collect();
+    let [low, high] = scene.view.map(Vec3::from);
+    let middle = 0.5 * (low + high);
+    let axes = usize::from(scene.dim.clamp(2, 3));
+    let count = |axis: usize| if axis < axes { PLACES[axis] } else { 1 };
+    let mut best = (f32::NEG_INFINITY, middle);
+    for k in 0..count(0) * count(1) * count(2) {
+        let index = [
+            k % count(0),
+            k / count(0) % count(1),
+            k / (count(0) * count(1)),
+        ];
+        let at = Vec3::from([0, 1, 2].map(|axis: usize| {
+            let share = (index[axis] as f32 + 0.5) / count(axis) as f32;
+            low[axis] + share * (high[axis] - low[axis])
+        }));
+        let away = |[low, high]: &[Vec3; 2]| (at - at.clamp(*low, *high)).length();
+        let nearest = boxes.iter().map(away).fold(f32::INFINITY, f32::min);
+        // Of places that are as far, the one nearest to the middle.
+        let worth = nearest.min(10.0) - 0.01 * (at - middle).length();
+        if worth > best.0 {
+            best = (worth, at);
+        }
+    }
+    best.1
+}

@@ -32,7 +32,7 @@ export async function making(browser, site) {
   await visit.tap("Keep and send");
   await visit.sees("Finish");
   await visit.tap("Keep");
-  await visit.hears("Kept under My levels");
+  await visit.hears("Kept under Your levels");
   await visit.tap("Copy link");
   await visit.page.waitForFunction(() => globalThis.copied);
   const link = await visit.page.evaluate(() => globalThis.copied);

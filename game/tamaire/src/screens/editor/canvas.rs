@@ -1,5 +1,6 @@
 //! The room in the editor: items to select, drag, stretch and turn.
 
+use super::super::widgets::words;
 use crate::game::{Drag, EditorPart, GRID, Game};
 use app_shell::View;
 use app_shell::widgets::is_on;
@@ -138,6 +139,17 @@ fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
         ui.painter()
             .rect_stroke(place, 4.0, rim, StrokeKind::Outside);
     }
+    if let Some(text) = switch_sign(game, item) {
+        let theme = game.theme();
+        let radius = 11.0;
+        ui.painter().circle(
+            place.center(),
+            radius,
+            theme.card,
+            Stroke::new(2.0, theme.ink),
+        );
+        words(ui, place.center(), &text, 15.0, theme.ink);
+    }
     if response.hovered() {
         ui.ctx().set_cursor_icon(CursorIcon::Grab);
     }
@@ -171,6 +183,18 @@ fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
     if is_selected && response.has_focus() {
         by_arrows(game, ui, &response);
     }
+}
+
+/// Returns the number of a button, or that of the button that moves an obstacle or opens a joint.
+fn switch_sign(game: &Game, item: Item) -> Option<String> {
+    let scene = game.maker.draft.scene();
+    let number = match item {
+        Item::Switch(index) => Some(index + 1),
+        Item::Obstacle(index) => scene.obstacle.get(index)?.switch,
+        Item::Joint(index) => scene.joint.get(index)?.switch,
+        _ => None,
+    };
+    number.map(|number| number.to_string())
 }
 
 /// Moves the selection with the arrow keys, while the player holds a selected item with the keys. Escape lets it go.

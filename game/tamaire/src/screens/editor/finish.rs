@@ -16,7 +16,7 @@ const CODE: f32 = 320.0;
 pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
     dim_background(ui, 255);
     let (theme, said, words) = (game.theme(), game.words(), game.making());
-    game.check_draft();
+    game.check_draft(ui.input(|input| input.stable_dt));
     let mut back = ui.input(|input| input.key_pressed(Key::Escape));
     let area = page_rect(ui);
     ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {

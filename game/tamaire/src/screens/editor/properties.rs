@@ -65,7 +65,7 @@ pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
         let response = header(ui, &theme, said.back, &title);
         focus_first(ui, &response);
         back |= response.clicked();
-        page(ui, "properties", WIDE, |ui| {
+        page(ui, &format!("properties of {item:?}"), WIDE, |ui| {
             card(ui, &theme, |ui| {
                 ui.set_width(ui.available_width());
                 let mut scene = game.maker.draft.scene().clone();

@@ -13,7 +13,7 @@ use tamaire_sound::Menu;
 /// Height of a button with text [points].
 const HIGH: f32 = 44.0;
 /// Width of a button with text [points].
-const WIDE: f32 = 112.0;
+const WIDE: f32 = 98.0;
 /// What can be done with the selection.
 #[derive(Copy, Clone, PartialEq)]
 enum Deed {
@@ -258,6 +258,8 @@ fn rows<T: Copy>(
     let mut chosen = None;
     let builder = UiBuilder::new().max_rect(rect);
     ui.scope_builder(builder, |ui| {
+        // The wheel scrolls sideways.
+        ui.style_mut().always_scroll_the_only_direction = true;
         ScrollArea::horizontal().id_salt(id).show(ui, |ui| {
             ui.spacing_mut().item_spacing = Vec2::splat(GAP);
             ui.vertical(|ui| {

@@ -41,6 +41,7 @@ enum Tool {
     Turn(usize),
     ToPaper,
     Picture,
+    Build,
 }
 
 impl Tool {
@@ -60,6 +61,9 @@ impl Tool {
                 all.extend([Self::Puff, Self::Lathe, Self::Slab]);
             }
             false => {}
+        }
+        if game.maker.is_alone() {
+            all.push(Self::Build);
         }
         if crate::platform::HAS_DIALOG && !block && !game.settings.scanning.is_on() {
             all.push(Self::Picture);
@@ -88,6 +92,7 @@ impl Tool {
             Self::Turn(side) => words.turn[side],
             Self::ToPaper => words.to_paper,
             Self::Picture => words.picture,
+            Self::Build => words.build_level,
         }
     }
 
@@ -125,6 +130,7 @@ impl Tool {
             Self::Turn(side) => maker.angles[0] += [-TURN, TURN][side],
             Self::ToPaper => maker.show_block(false),
             Self::Picture => game.ask_for_file(),
+            Self::Build => game.edit_room(),
         }
     }
 
@@ -215,6 +221,9 @@ impl Tool {
                     colour,
                     ink,
                 );
+            }
+            Self::Build => {
+                icons::basket(painter, at, scale, ink);
             }
             Self::Picture => {
                 let frame = Rect::from_center_size(at, scale * vec2(20.0, 16.0));
