@@ -144,6 +144,34 @@ fn kind_of_obstacle(text: &ObstacleText) -> Kind {
     }
 }
 
+/// Distance up to which a bar touches the basket that it encloses [m].
+const TOUCHES: f32 = 0.06;
+/// Length by which a bar may be longer than its basket [m].
+const LONGER: f32 = 0.4;
+
+/// Returns a basket and the obstacles that enclose it, and any other item alone.
+pub fn with_bars(scene: &Scene, item: Item) -> Vec<Item> {
+    let mut all = vec![item];
+    let Item::Basket(_) = item else {
+        return all;
+    };
+    let Some([low, high]) = bounds(scene, item) else {
+        return all;
+    };
+    let reach = Vec3::splat(TOUCHES);
+    let bars = (0..scene.obstacle.len())
+        .map(Item::Obstacle)
+        .filter(|&bar| {
+            let Some([from, to]) = bounds(scene, bar) else {
+                return false;
+            };
+            let touches = from.cmple(high + reach).all() && to.cmpge(low - reach).all();
+            touches && (to - from).cmple(high - low + LONGER).all()
+        });
+    all.extend(bars);
+    all
+}
+
 /// Returns those of the items that the scene has, without repetitions.
 fn existing(scene: &Scene, items: &[Item]) -> BTreeSet<Item> {
     let items = items.iter().copied();

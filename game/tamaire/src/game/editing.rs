@@ -6,9 +6,10 @@ use crate::session::Session;
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
 use std::sync::Arc;
-use tamaire_maker::draft::Draft;
+use tamaire_maker::draft::{Draft, Language};
 use tamaire_maker::items::{self, Clip, Guide, Item, Kind};
 use tamaire_play::Level;
+use tamaire_play::level::LevelError;
 
 /// Distance between two lines of the grid to which things snap [m].
 pub const GRID: f32 = 0.05;
@@ -120,6 +121,7 @@ impl Game {
     /// Opens the editor with an empty room in 2D or 3D.
     pub fn edit_blank(&mut self, dim: u8) {
         self.maker.draft = Draft::blank(dim);
+        self.number_name();
         self.begin_editing(None);
     }
 
@@ -154,6 +156,7 @@ impl Game {
     /// Opens the editor with the room of the drawing.
     pub fn edit_room(&mut self) {
         self.maker.take_room();
+        self.number_name();
         self.begin_editing(None);
         // The room was never kept.
         self.maker.saved = None;
@@ -168,6 +171,18 @@ impl Game {
         maker.editor.forget();
         maker.editor.snaps = true;
         self.go(Screen::Editor);
+    }
+
+    /// Gives a new level a name that no other level of the player has.
+    fn number_name(&mut self) {
+        let made = self.levels.iter().filter(|level| is_made_here(&level.id));
+        let number = made.count() + 1;
+        if number > 1 {
+            for language in [Language::English, Language::Japanese] {
+                let name = format!("{} {number}", self.maker.draft.name(language));
+                self.maker.draft.set_name(language, &name);
+            }
+        }
     }
 
     /// Returns the text of a level as its author wrote it, if it is known.
@@ -187,8 +202,11 @@ impl Game {
                 self.bout.show(session);
             }
             Err(error) => {
-                let told = (self.words().level_error)(&error);
-                self.maker.editor.problem = Some(told);
+                let is_outside = matches!(error, LevelError::NoGame { field: "body", .. });
+                self.maker.editor.problem = Some(match is_outside {
+                    true => self.making().body_outside.to_string(),
+                    false => (self.words().level_error)(&error),
+                });
             }
         }
         self.maker.editor.is_slow = self.clock.now() - began > QUICK;
@@ -248,7 +266,7 @@ impl Game {
         match (editor.is_adding, is_selected) {
             (true, true) => editor.selection.retain(|known| *known != item),
             (true, false) => editor.selection.push(item),
-            (false, _) => editor.selection = vec![item],
+            (false, _) => editor.selection = items::with_bars(self.maker.draft.scene(), item),
         }
         editor.part = match editor.selection.is_empty() {
             true => EditorPart::Things,
@@ -339,8 +357,23 @@ impl Game {
         boxes.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
     }
 
+    /// Returns a displacement of the selection by which bodies, hands and baskets stay in the view.
+    pub fn within_view(&self, by: Vec3) -> Vec3 {
+        let scene = self.maker.draft.scene_before();
+        let [low, high] = scene.view.map(Vec3::from);
+        let stays = |item: &&Item| matches!(item, Item::Body(_) | Item::Hand(_) | Item::Basket(_));
+        let boxes = self.maker.editor.selection.iter().filter(stays);
+        let boxes = boxes.filter_map(|&item| items::bounds(scene, item));
+        boxes.fold(by, |by, [from, to]| {
+            // What is partly outside may come nearer.
+            by.max((low - from).min(Vec3::ZERO))
+                .min((high - to).max(Vec3::ZERO))
+        })
+    }
+
     /// Moves the selection by a step.
     pub fn nudge(&mut self, by: Vec3) {
+        let by = self.within_view(by);
         let selection = self.maker.editor.selection.clone();
         self.change_level(|scene| items::translate(scene, &selection, by));
     }

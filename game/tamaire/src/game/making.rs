@@ -71,6 +71,8 @@ pub struct Maker {
     pub before_stroke: Option<Drawing>,
     /// Whether a stroke is being drawn.
     is_drawing: bool,
+    /// Whether the sheet has the focus of a player with keys or a pad.
+    pub is_sheet_on: bool,
     /// Cursor of players without a pointer [cells]; `None` while it is not used.
     pub cursor: Option<Cursor>,
     /// Empty room into which a drawing is dropped that was begun from the title.
@@ -123,6 +125,7 @@ impl Default for Maker {
             pen: None,
             before_stroke: None,
             is_drawing: false,
+            is_sheet_on: false,
             cursor: None,
             room: Draft::blank(2),
             draft: Draft::blank(2),
@@ -276,6 +279,7 @@ impl Game {
     /// Opens the paper for a drawing that is dropped into an empty room.
     pub fn open_paper(&mut self) {
         self.maker.target = None;
+        self.maker.tool = DrawingTool::Crayon;
         self.go(Screen::Paper);
     }
 
@@ -287,8 +291,12 @@ impl Game {
         if !self.maker.put_drawing() {
             return self.notify(self.making().draw_first.to_string());
         }
-        if self.maker.target.is_some() {
-            return self.go(Screen::Editor);
+        if let Some(body) = self.maker.target {
+            self.go(Screen::Editor);
+            if let Some(body) = body {
+                self.select(Item::Body(body));
+            }
+            return;
         }
         match self.maker.room.level() {
             Ok(level) => {

@@ -258,7 +258,7 @@ fn make(ui: &mut Ui, game: &Game) -> Option<LevelAction> {
 /// Shows the buttons below a level that the player made or added.
 fn own_buttons(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Option<LevelAction> {
     let name = game.settings.language.of(&game.levels[index].game().name);
-    let (theme, said, words) = (game.theme(), game.words(), game.making());
+    let (theme, words) = (game.theme(), game.making());
     let mut wanted = None;
     let size = vec2((wide - 16.0) / 3.0, SLIM);
     ui.horizontal(|ui| {
@@ -266,7 +266,7 @@ fn own_buttons(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Option<Leve
         for (text, action) in [
             (words.change, LevelAction::Change(index)),
             (words.duplicate, LevelAction::Copy(index)),
-            (said.remove_level, LevelAction::TakeOut(index)),
+            (words.remove, LevelAction::TakeOut(index)),
         ] {
             let response = plain_button(ui, &theme, text, size, ButtonStyle::Other);
             let told = format!("{text}: {name}");

@@ -32,7 +32,12 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 _ => super::editor::beside_properties(screen),
             };
             let fitted = view_of_level(&game.bout.camera, part, &level);
-            view.shrunk(fitted.scale / view.scale)
+            // In 3D the height alone decides about the scale of a view.
+            let narrow = match view.space.is_some() {
+                true => part.width() / screen.width(),
+                false => 1.0,
+            };
+            view.shrunk((fitted.scale / view.scale).min(narrow))
                 .displaced(part.center() - screen.center())
         }
         _ => view,

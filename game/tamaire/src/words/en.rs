@@ -112,7 +112,6 @@ pub(super) const WORDS: Words = Words {
     save: "Save replay",
     delete: "Delete",
     confirm: "Really?",
-    remove_level: "Remove from list",
     saved: "Saved",
     open_folder: "Open folder",
     folder_not_opened: "The folder could not be opened:",

@@ -108,7 +108,6 @@ pub(super) const WORDS: Words = Words {
     save: "リプレイを保存",
     delete: "けす",
     confirm: "けしていい？",
-    remove_level: "リストからはずす",
     saved: "保存しました",
     open_folder: "フォルダーをひらく",
     folder_not_opened: "フォルダーを ひらけませんでした：",

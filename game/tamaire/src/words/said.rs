@@ -66,7 +66,6 @@ pub struct Words {
     pub save: &'static str,
     pub delete: &'static str,
     pub confirm: &'static str,
-    pub remove_level: &'static str,
     pub saved: &'static str,
     pub open_folder: &'static str,
     pub folder_not_opened: &'static str,

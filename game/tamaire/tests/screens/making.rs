@@ -4,11 +4,13 @@ use crate::window::*;
 use app_shell::Clock;
 use egui::{Event, Key, PointerButton, Pos2, Rect, TouchPhase, Vec2, pos2, vec2};
 use egui_kittest::kittest::Queryable;
+use fuwafuwa::{DEFAULT_TICK, Vec3};
 use tamaire::game::{DrawingTool, Game, Screen};
 use tamaire::platform::Files;
 use tamaire::words::Language;
-use tamaire_maker::drawing::Drawing;
+use tamaire_maker::drawing::{Brush, Drawing};
 use tamaire_maker::items::{Item, Kind};
+use tamaire_play::playground::Stuff;
 use tamaire_play::{AnyRound, Level, Link};
 
 /// Sizes of the window in landscape and portrait orientation.
@@ -97,6 +99,39 @@ fn own_drawing_is_in_the_hand_after_three_presses() {
             click(&mut window, words.to_paper);
             assert_eq!(screen(&window), Screen::Paper);
             assert_eq!(game(&mut window).maker.paper.solid_count(), drawn);
+        }
+    }
+}
+
+#[test]
+fn animal_with_legs_and_a_tail_bears_its_drop() {
+    let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+    for stuff in Stuff::ALL {
+        for is_solid in [false, true] {
+            let game = game(&mut window);
+            game.open_paper();
+            game.maker.paper.clear();
+            let mut line = |from: [f32; 2], to: [f32; 2], radius: f32| {
+                let [from, to] = [from, to].map(|[x, y]| Vec3::new(x, y, 0.5));
+                let brush = Brush::Draw(stuff.number());
+                game.maker.paper.stroke(from, to, radius, brush);
+            };
+            line([20.0, 32.0], [42.0, 34.0], 9.0);
+            line([44.0, 36.0], [52.0, 50.0], 5.0);
+            line([20.0, 32.0], [6.0, 46.0], 2.5);
+            line([22.0, 30.0], [22.0, 14.0], 3.0);
+            line([40.0, 30.0], [40.0, 14.0], 3.0);
+            game.maker.paper.end_stroke();
+            match is_solid {
+                true => game.maker.make_solid(Drawing::puffed),
+                false => game.maker.show_block(false),
+            }
+            game.drop_drawing();
+            assert_eq!(game.screen(), Screen::Play);
+            (0..240).for_each(|_| game.update(DEFAULT_TICK));
+            let progress = game.bout.round().progress();
+            assert_eq!(progress.pieces, 1, "{stuff:?}, solid: {is_solid}");
+            game.leave_round();
         }
     }
 }
@@ -434,7 +469,7 @@ fn shipped_level_is_changed_and_removed_with_undo() {
     assert_eq!(game(&mut window).maker.draft.text(), text);
     let at = place_of_item(&mut window, Item::Body(0));
     drag(&mut window, &[at, at + vec2(30.0, 0.0)]);
-    click(&mut window, "Keep and send");
+    click(&mut window, "Finish");
     click(&mut window, "Keep");
     let own = game(&mut window).levels.last().unwrap().clone();
     assert_ne!(own.scene(), classic.scene());
@@ -442,7 +477,7 @@ fn shipped_level_is_changed_and_removed_with_undo() {
     game(&mut window).go(Screen::Levels);
     frames(&mut window, 3);
     let name = own.game().name.en.clone();
-    click(&mut window, &format!("Remove from list: {name}"));
+    click(&mut window, &format!("Remove: {name}"));
     assert!(
         !game(&mut window)
             .levels
@@ -463,6 +498,8 @@ fn selection_is_copied_turned_scaled_and_removed_by_buttons() {
     let mut window = open(Files::nowhere(), SIZES[0], 1.0);
     game(&mut window).edit_blank(2);
     game(&mut window).add_thing(Kind::Wall);
+    let wall = game(&mut window).maker.editor.selection[0];
+    game(&mut window).select(wall);
     frames(&mut window, 2);
     let before = game(&mut window).maker.draft.scene().clone();
     click(&mut window, "Copy");

@@ -39,11 +39,11 @@ fn dropped_level_is_saved_until_removed() {
     assert!(game(&mut again).levels.contains(&dropped));
     game(&mut again).go(Screen::Levels);
     frames(&mut again, 2);
-    click(&mut again, "Remove from list: cat");
+    click(&mut again, "Remove: cat");
     assert_eq!(own(&mut again).len(), 0);
     click(&mut again, "Bring back cat");
     assert_eq!(own(&mut again), ["cat.png"], "removal can be undone");
-    click(&mut again, "Remove from list: cat");
+    click(&mut again, "Remove: cat");
     assert_eq!(own(&mut again).len(), 0);
     assert_eq!(screen(&again), Screen::Levels);
     drop(again);
@@ -60,7 +60,7 @@ fn level_is_removed_and_brought_back_by_keys() {
     drop_file(&mut window, cat());
     game(&mut window).go(Screen::Levels);
     frames(&mut window, 3);
-    for (name, count) in [("Remove from list: cat", 0), ("Bring back cat", 1)] {
+    for (name, count) in [("Remove: cat", 0), ("Bring back cat", 1)] {
         for _ in 0..200 {
             if window.get_by_label(name).is_focused() {
                 break;

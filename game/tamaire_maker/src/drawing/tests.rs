@@ -629,7 +629,7 @@ fn puffed_disc_is_a_ball() {
 fn lathed_drawing_equals_itself_turned_by_a_quarter() {
     let mut rng = Rng::with_seed(13);
     for _ in 0..150 {
-        let paper = random_drawing(true, &mut rng);
+        let paper = random_drawing(true, &mut rng).completed();
         let lathed = paper.lathed();
         let (small, low) = small_in_block(&paper);
         let width = small.size()[0] as i32;
@@ -917,4 +917,26 @@ fn visible_faces_are_between_solid_and_empty_cells() {
         unique.dedup();
         assert_eq!(unique.len(), faces.len());
     }
+}
+
+#[test]
+fn half_an_outline_is_turned_about_the_middle_of_the_paper() {
+    let mut half = Drawing::paper();
+    half.set_closes(false);
+    half.stroke(
+        Vec3::new(33.0, 20.0, 0.5),
+        Vec3::new(44.0, 20.0, 0.5),
+        2.0,
+        Brush::Draw(1),
+    );
+    half.end_stroke();
+    let mut whole = half.clone();
+    whole.stroke(
+        Vec3::new(31.0, 20.0, 0.5),
+        Vec3::new(20.0, 20.0, 0.5),
+        2.0,
+        Brush::Draw(1),
+    );
+    whole.end_stroke();
+    assert_eq!(half.lathed().cells(), whole.lathed().cells());
 }

@@ -8,6 +8,9 @@ use super::{BLOCK, Drawing, margin, shrink};
 /// Maximum width and height of a drawing in a block [cells]. A layer of the block stays empty on every side.
 const LONGEST: usize = BLOCK - 2;
 
+/// Distance from the middle of the paper within which half an outline begins [cells].
+const NEAR_MIDDLE: usize = 2;
+
 impl Drawing {
     /// Returns the solid part of the paper, reduced so that it fits into a block; `None` if the paper is empty.
     pub(super) fn small(&self) -> Option<Self> {
@@ -52,9 +55,10 @@ impl Drawing {
 
     /// Returns a block in which the drawing was turned on a lathe, about the vertical axis through the middle of its
     /// solid part. A voxel takes the cell of the drawing at its height and at its distance right of the axis, or left of
-    /// the axis if that one is empty. A block stays as it is.
+    /// the axis if that one is empty. Half an outline, which begins at the middle of the paper, is turned about that middle.
+    /// A block stays as it is.
     pub fn lathed(&self) -> Self {
-        self.raised(|small| {
+        self.completed().raised(|small| {
             let [width, ..] = small.size();
             let [left, bottom, _] = margin([BLOCK; 3], small.size());
             let middle = 0.5 * width as f32;
@@ -69,6 +73,27 @@ impl Drawing {
                 }
             })
         })
+    }
+
+    /// Returns a drawing of half an outline with its mirror image; any other drawing as it is.
+    pub(super) fn completed(&self) -> Self {
+        let middle = self.size()[0] / 2;
+        let is_half = self.is_paper()
+            && self.bounds().is_some_and(|[low, high]| {
+                let ends = [low[0], high[0] + 1];
+                ends.iter().any(|end| end.abs_diff(middle) <= NEAR_MIDDLE)
+            });
+        let mut whole = self.clone();
+        if is_half {
+            let width = self.size()[0];
+            for (index, crayon) in self.cells.iter().enumerate() {
+                let mirrored = index - index % width + (width - 1 - index % width);
+                if whole.cells[mirrored] == 0 {
+                    whole.cells[mirrored] = *crayon;
+                }
+            }
+        }
+        whole
     }
 
     /// Returns a block in which each cell of this paper becomes a column. `half` returns half its height in z [cells]

@@ -29,7 +29,7 @@ export async function making(browser, site) {
   await visit.sees("Editor");
   await visit.tap("Basket");
   await visit.place("Basket 1");
-  await visit.tap("Keep and send");
+  await visit.tap("Finish");
   await visit.sees("Finish");
   await visit.tap("Keep");
   await visit.hears("Kept under Your levels");

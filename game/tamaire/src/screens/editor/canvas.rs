@@ -3,7 +3,7 @@
 use super::super::widgets::words;
 use crate::game::{Drag, EditorPart, GRID, Game};
 use app_shell::View;
-use app_shell::widgets::is_on;
+use app_shell::widgets::{fitted, is_on};
 use egui::{
     Color32, CursorIcon, EventFilter, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense,
     Shape, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
@@ -16,6 +16,8 @@ use tamaire_maker::items::{self, Item};
 const LEAST: f32 = 26.0;
 /// Radius of a handle [points].
 const HANDLE: f32 = 9.0;
+/// Least distance between two handles at opposite corners [points].
+const APART: f32 = 84.0;
 /// Distance of the handle for turning above the selection [points].
 const ABOVE: f32 = 34.0;
 /// Turn of the camera by a drag [rad/point].
@@ -62,6 +64,19 @@ fn look_around(game: &mut Game, ui: &Ui, room: Rect) {
         fingers.unwrap_or(if turns { pointer.delta() } else { Vec2::ZERO })
     });
     game.bout.camera.orbit(-ORBIT * by.x, ORBIT * by.y);
+    if game.maker.editor.selection.is_empty() {
+        let theme = game.theme();
+        let text = game.making().how_in_space;
+        let galley = fitted(ui.painter(), text, 17.0, room.width() - 40.0, theme.ink);
+        let at = pos2(
+            room.center().x - 0.5 * galley.size().x,
+            room.bottom() - 34.0,
+        );
+        let place = Rect::from_min_size(at, galley.size()).expand2(vec2(12.0, 5.0));
+        ui.painter()
+            .rect_filled(place, 12.0, theme.card.gamma_multiply(0.8));
+        ui.painter().galley(at, galley, theme.ink);
+    }
 }
 
 /// Returns the box on the screen around a box in the world.
@@ -171,7 +186,7 @@ fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
     }
     if response.drag_started() {
         if !is_selected {
-            game.maker.editor.selection = vec![item];
+            game.maker.editor.selection = items::with_bars(game.maker.draft.scene(), item);
             game.maker.editor.part = EditorPart::Selection;
         }
         let from = ui.input(|input| input.pointer.press_origin());
@@ -262,6 +277,7 @@ fn follow(game: &mut Game, ui: &Ui, view: &View, response: &Response) {
                 };
                 game.maker.editor.guides = guides;
             }
+            let by = game.within_view(by);
             game.preview_level(|scene| items::translate(scene, &selection, by));
         }
         Drag::Stretch(about, handle) => {
@@ -299,7 +315,7 @@ fn select_in(game: &mut Game, view: &View, frame: Rect) {
     let scene = game.maker.draft.scene();
     let is_in = |item: &Item| {
         let place = items::bounds(scene, *item).map(|[low, high]| on_screen(view, low, high));
-        place.is_some_and(|place| frame.contains_rect(place))
+        place.is_some_and(|place| frame.contains(place.center()))
     };
     let found: Vec<Item> = items::items(scene).into_iter().filter(is_in).collect();
     if found.is_empty() {
@@ -317,6 +333,10 @@ fn handles(game: &mut Game, ui: &mut Ui, view: &View) {
     let middle = 0.5 * (low + high);
     let ink = game.theme().accent;
     let along = |share: f32, axis: usize| low[axis] + share * (high[axis] - low[axis]);
+    // The handles are outside of the selection, and apart, so that a thin thing can be taken between them.
+    let tight = on_screen(view, low, high).expand(1.5 * HANDLE);
+    let spare = (0.5 * (Vec2::splat(APART) - tight.size())).max(Vec2::ZERO);
+    let frame = tight.expand2(spare);
     for (x, y) in [
         (0.0, 0.0),
         (1.0, 0.0),
@@ -327,22 +347,23 @@ fn handles(game: &mut Game, ui: &mut Ui, view: &View) {
         (0.0, 0.5),
         (1.0, 0.5),
     ] {
-        let at = Vec3::new(along(x, 0), along(y, 1), middle.z);
+        let at = frame.lerp_inside(vec2(x, 1.0 - y));
+        let under = view.to_world(at, 0.0);
         // A handle in the middle of a side leaves the other axis as it is.
         let handle = Vec3::new(
-            if x == 0.5 { middle.x } else { at.x },
-            if y == 0.5 { middle.y } else { at.y },
+            if x == 0.5 { middle.x } else { under.x },
+            if y == 0.5 { middle.y } else { under.y },
             middle.z,
         );
         let opposite = Vec3::new(along(1.0 - x, 0), along(1.0 - y, 1), middle.z);
         let name = ("handle", (2.0 * x) as i32, (2.0 * y) as i32);
         let drag = Drag::Stretch(opposite, handle);
-        one_handle(game, ui, view, (name, view.to_screen(at)), drag, ink);
+        one_handle(game, ui, view, (name, at), drag, ink);
     }
-    let top = view.to_screen(Vec3::new(middle.x, high.y, middle.z));
-    let at = top - vec2(0.0, ABOVE);
-    ui.painter().line_segment([top, at], Stroke::new(2.0, ink));
-    let drag = Drag::Turn(middle, Vec3::new(middle.x, high.y, middle.z));
+    let at = frame.center_top() - vec2(0.0, ABOVE);
+    let line = [frame.center_top(), at];
+    ui.painter().line_segment(line, Stroke::new(2.0, ink));
+    let drag = Drag::Turn(middle, view.to_world(at, 0.0));
     one_handle(game, ui, view, (("turn", 0, 0), at), drag, ink);
 }
 

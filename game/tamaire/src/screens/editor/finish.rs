@@ -11,7 +11,7 @@ use tamaire_sound::Menu;
 /// Width of the page [points].
 const WIDE: f32 = 700.0;
 /// Width and height of the QR code [points].
-const CODE: f32 = 320.0;
+const CODE: f32 = 560.0;
 
 pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
     dim_background(ui, 255);

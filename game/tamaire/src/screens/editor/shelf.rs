@@ -21,6 +21,7 @@ enum Deed {
     Properties,
     Turn(f32),
     Lift(f32),
+    Tip(f32),
     Nudge(usize),
     Scale(i32),
     Copy,
@@ -42,15 +43,16 @@ impl Deed {
             Self::Turn(-1.0),
         ]);
         if game.maker.draft.scene().dim == 3 {
-            all.extend([Self::Lift(1.0), Self::Lift(-1.0)]);
+            all.extend([
+                Self::Lift(1.0),
+                Self::Lift(-1.0),
+                Self::Nudge(4),
+                Self::Nudge(5),
+            ]);
+            all.extend([Self::Tip(1.0), Self::Tip(-1.0)]);
         }
         if game.settings.scanning.is_on() {
-            let count = if game.maker.draft.scene().dim == 3 {
-                6
-            } else {
-                4
-            };
-            all.extend((0..count).map(Self::Nudge));
+            all.extend((0..4).map(Self::Nudge));
         }
         all.push(Self::Copy);
         if game.can_paste() {
@@ -67,6 +69,7 @@ impl Deed {
             Self::Properties => words.properties,
             Self::Turn(steps) => words.turn[usize::from(steps < 0.0)],
             Self::Lift(steps) => words.lift[usize::from(steps < 0.0)],
+            Self::Tip(steps) => words.tip[usize::from(steps < 0.0)],
             Self::Nudge(way) => words.nudge[way],
             Self::Scale(steps) => words.scale[usize::from(steps < 0)],
             Self::Copy => words.copy,
@@ -80,7 +83,10 @@ impl Deed {
         game.blip(Menu::Confirm);
         match self {
             Self::Draw => game.draw_selected(),
-            Self::Properties => game.go(Screen::Properties),
+            Self::Properties => {
+                game.maker.editor.moves_by_keys = false;
+                game.go(Screen::Properties);
+            }
             Self::Turn(steps) => {
                 // Seen from above, a turn about the vertical axis goes the same way.
                 let axis = if game.maker.draft.scene().dim == 3 {
@@ -90,6 +96,7 @@ impl Deed {
                 };
                 game.turn_selection(axis, steps);
             }
+            Self::Tip(steps) => game.turn_selection(Vec3::Z, steps),
             Self::Nudge(way) => {
                 let ways = [-Vec3::X, Vec3::X, -Vec3::Y, Vec3::Y, -Vec3::Z, Vec3::Z];
                 game.nudge(0.1 * ways[way]);
@@ -260,7 +267,9 @@ fn rows<T: Copy>(
     ui.scope_builder(builder, |ui| {
         // The wheel scrolls sideways.
         ui.style_mut().always_scroll_the_only_direction = true;
-        ScrollArea::horizontal().id_salt(id).show(ui, |ui| {
+        let area = ScrollArea::horizontal().id_salt(id);
+        let area = area.scroll_source(egui::scroll_area::ScrollSource::ALL);
+        area.show(ui, |ui| {
             ui.spacing_mut().item_spacing = Vec2::splat(GAP);
             ui.vertical(|ui| {
                 // Column by column, so that the first options are seen without scrolling.

@@ -4,7 +4,7 @@ use super::super::widgets::focus_first;
 use super::pen;
 use super::tools;
 use crate::game::{DrawingTool, Game};
-use app_shell::widgets::focus_ring;
+use app_shell::widgets::{focus_ring, is_on};
 use egui::{
     Color32, Id, Mesh, PointerButton, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo,
     vec2,
@@ -81,6 +81,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, rect: Rect) {
             game.maker.lift_pen();
         }
     }
+    game.maker.is_sheet_on = is_on(ui, &sheet);
     draw(game, ui, rect);
     pen::draw_cursor(game, ui, rect);
     focus_ring(ui, &sheet, rect, 14.0, &game.theme());
@@ -178,7 +179,9 @@ fn draw(game: &Game, ui: &Ui, rect: Rect) {
     mesh.reserve_triangles(2 * faces.len());
     mesh.reserve_vertices(4 * faces.len());
     for face in &faces {
-        let bright = LIGHT.1 + (1.0 - LIGHT.1) * face.normal.dot(light).max(0.0);
+        // Faces that are turned away from the light differ, too.
+        let lit = 0.5 * (1.0 + face.normal.dot(light));
+        let bright = LIGHT.1 + (1.0 - LIGHT.1) * lit;
         let colour = shaded(tools::crayon_colour(game, face.crayon), bright);
         let first = mesh.vertices.len() as u32;
         for corner in face.corners {

@@ -160,7 +160,7 @@ fn told(game: &Game, ui: &Ui, rect: Rect) {
         (words.too_thin.to_string(), theme.accent)
     } else if pieces > 1 {
         ((words.pieces)(pieces), theme.ink)
-    } else if game.maker.cursor.is_some() {
+    } else if game.maker.cursor.is_some() || game.maker.is_sheet_on {
         let [by_keys, by_pad, by_switch] = words.how_to_draw;
         let how = match game.controls.means {
             _ if game.settings.scanning.is_on() => by_switch,

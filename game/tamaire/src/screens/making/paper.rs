@@ -4,7 +4,7 @@ use super::super::widgets::{focus_first, words};
 use super::picture::Picture;
 use super::{pen, tools};
 use crate::game::{DrawingTool, Game};
-use app_shell::widgets::focus_ring;
+use app_shell::widgets::{focus_ring, is_on};
 use egui::{
     Color32, Id, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
@@ -27,6 +27,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, rect: Rect) {
             .maker
             .draw_to(to_cells(&game.maker.paper, rect, at), pressure);
         is_refused |= tool == DrawingTool::Bucket && begins && !has_drawn;
+        let is_empty = game.maker.paper.is_empty();
+        if tool == DrawingTool::Paint && begins && is_empty {
+            game.notify(game.making().nothing_to_paint.to_string());
+        }
     }
     if moves.is_up {
         game.maker.lift_pen();
@@ -34,6 +38,7 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, rect: Rect) {
     if is_refused {
         game.notify(game.making().not_enclosed.to_string());
     }
+    game.maker.is_sheet_on = is_on(ui, &sheet);
     draw(game, ui, rect);
     pen::draw_cursor(game, ui, rect);
     if let Some(at) = ui.input(|input| input.pointer.hover_pos())
