@@ -4,7 +4,7 @@
 //!
 //! - [`history`]: undo and redo
 //! - [`drawing`]: bodies drawn with crayons, on paper or in space
-//! - [`palette`]: crayons
+//! - [`palette`]: the materials of crayons
 //! - [`body`]: drawings as bodies of levels, and back
 //! - [`items`]: everything that has a place in a level
 //! - [`draft`]: a level that is being edited

@@ -67,10 +67,8 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 }
                 let lock = game.lock_of(section);
                 heading(ui, game, section, &journey, lock);
-                if can_make {
-                    if let Some(action) = make(ui, game) {
-                        wanted = Some(action);
-                    }
+                if can_make && let Some(action) = make(ui, game) {
+                    wanted = Some(action);
                 }
                 for row in places.chunks(columns) {
                     let shown = ui.horizontal_top(|ui| {

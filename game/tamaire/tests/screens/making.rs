@@ -321,7 +321,7 @@ fn levels_of_two_makers_with_the_same_id_stay_apart() {
         let named = named.filter(|level| level.game().name.en == name);
         named.map(|level| level.id.clone()).collect::<Vec<_>>()
     };
-    assert_eq!(ids(game, "one"), [mine.id.clone()]);
+    assert_eq!(ids(game, "one"), std::slice::from_ref(&mine.id));
     assert_eq!(ids(game, "other").len(), 1);
     assert_ne!(ids(game, "other"), ids(game, "one"));
     // What others have made is changed as a copy.

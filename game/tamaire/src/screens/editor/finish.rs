@@ -79,7 +79,7 @@ fn checks(game: &Game, ui: &mut Ui, theme: &Theme) {
         );
     };
     if let Some(problem) = game.maker.problem(game.words(), words) {
-        line(ui, "✗", &problem, theme.accent);
+        line(ui, "×", &problem, theme.accent);
         return;
     }
     let Some(check) = &game.maker.check else {
