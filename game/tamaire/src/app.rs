@@ -185,7 +185,7 @@ impl App {
                     .game
                     .trial
                     .is_some_and(|trial| trial.device == device.id);
-                // A stick that moves the pen does not move the focus as well; a hat does both.
+                // A stick that moves the pen does not move the focus as well.
                 let draws = self.game.maker.cursor.is_some()
                     && sticks::radial_dead_zone(device.aim(), 0.3, 1.0) != [0.0; 2];
                 if in_menu && !is_tried && !draws {
@@ -372,7 +372,7 @@ impl App {
             Event::Paste(text) => Some(text),
             _ => None,
         });
-        // What is pasted while something is made is a text or a thing.
+        // While a level is made, pasted text is a name, or stands for copied things.
         if !game.screen().is_of_making() {
             for link in pasted {
                 game.open_link(link);

@@ -40,7 +40,7 @@ use drawing::DrawingWatch;
 pub use editing::{Drag, Editor, EditorPart, GRID};
 pub use ending::Ending;
 use fuwafuwa::DEFAULT_TICK;
-pub use making::{Cursor, DrawingTool, Maker, WIDTHS};
+pub use making::{Cursor, DrawingTool, Flaws, Maker, WIDTHS};
 pub use notices::{Notice, Notices};
 pub use public::{EndedRound, PublicMode};
 pub use screen::{Screen, Screens};
@@ -48,9 +48,8 @@ pub use sharing::{MOST_NAME, credits};
 pub use shelf::{RoundDetails, SavedRound, SavedRounds};
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use tamaire_maker::drawing::PAPER;
 use tamaire_play::daily::{is_daily, level_of};
-use tamaire_play::level::built_in;
+use tamaire_play::level::{LevelError, built_in};
 use tamaire_play::{Assist, Level, Playback, Replay, ReplayError};
 use tamaire_sound::{Cue, Menu};
 pub use toys::Toys;
@@ -187,6 +186,14 @@ impl Game {
     /// Returns the texts about making in the language of the player.
     pub fn making(&self) -> &'static MakingWords {
         self.settings.language.making()
+    }
+
+    /// Returns what is wrong with a level, in words for its maker.
+    pub fn told(&self, error: &LevelError) -> String {
+        match error {
+            LevelError::NoGame { field: "body", .. } => self.making().body_outside.to_string(),
+            error => (self.words().level_error)(error),
+        }
     }
 
     /// Returns the colour theme.
@@ -446,6 +453,7 @@ impl Game {
             false => session.without_rewind(),
         };
         self.bout.begin(session, self.time);
+        self.maker.editor.end_test();
         let is_space = self.bout.turn().is_some();
         self.controls.begin(is_space);
         let listed = self.listed(self.bout.round().level());
@@ -462,7 +470,7 @@ impl Game {
         match given {
             OpenRequest::Level(Ok(level)) => self.offer(*level),
             OpenRequest::Body(name, bytes) if self.screen() == Screen::Paper => {
-                self.draw_picture(name, bytes, PAPER);
+                self.draw_picture(name, bytes);
             }
             OpenRequest::Body(name, bytes) => match OpenRequest::level_around(&name, &bytes) {
                 Ok(level) => self.offer(level),
@@ -513,6 +521,7 @@ impl Game {
     }
 
     pub(super) fn offer(&mut self, mut level: Level) {
+        level.id = sharing::foreign_id(&level.id);
         let notes = level.scene().notes().iter();
         let notes: Vec<String> = notes.map(self.words().import_note).collect();
         let known = self.levels.iter().position(|known| **known == level);

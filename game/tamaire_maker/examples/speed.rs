@@ -37,7 +37,15 @@ fn main() -> Result<(), Box<dyn Error>> {
             let dropped = Instant::now();
             let [low, high] = draft.scene().view.map(Vec3::from);
             let middle = 0.5 * (low + high);
-            draft.change(|scene| put(scene, Some(0), &drawing, &Palette::default(), middle));
+            draft.change(|scene| {
+                put(
+                    scene,
+                    Some(0),
+                    &drawing,
+                    &Palette::default(),
+                    (middle, None),
+                )
+            });
             let mut round = AnyRound::new(Arc::new(draft.level()?));
             let report = round.step(InputFrame::default());
             assert_eq!(report.quarantined, 0, "the body moves");

@@ -1,73 +1,87 @@
 //! Drawings as bodies of levels, and back.
 
 use crate::drawing::Drawing;
+use crate::items::{Item, bounds};
 use crate::palette::{Palette, number_in};
 use fuwafuwa::{Dim, Dim2, Dim3, Vec3, VoxelGrid};
 use fuwafuwa_scenes::scene::{BodyText, MAX_MATERIALS, VoxelsText};
 use fuwafuwa_scenes::{Scene, SceneError};
 
 /// Edge length of a cell of the paper in a room [m], so that a full page is 0.9 m wide.
-pub const PAPER_CELL: f32 = 0.9 / 64.0;
+const PAPER_CELL: f32 = 0.9 / 64.0;
 /// Edge length of a cell of a block in a room [m].
-pub const BLOCK_CELL: f32 = 0.9 / 32.0;
+const BLOCK_CELL: f32 = 0.9 / 32.0;
 
 /// Makes a drawing the body with index `body` of a scene, or a new body without an index. Its middle comes to `centre`
-/// [m], or stays where the body was. The crayons become materials of the scene. Returns the index of the body, or `None`
-/// if the drawing is empty.
+/// [m], or stays where the body was. A cell is `cell` [m] wide; by default, a page or a block is 0.9 m wide. The crayons
+/// become materials of the scene. Returns the index of the body, or `None` if the drawing is empty.
 pub fn put(
     scene: &mut Scene,
     body: Option<usize>,
     drawing: &Drawing,
     palette: &Palette,
-    centre: Vec3,
+    (centre, cell): (Vec3, Option<f32>),
 ) -> Option<usize> {
-    let cell = match drawing.is_paper() {
+    let cell = cell.unwrap_or(match drawing.is_paper() {
         true => PAPER_CELL,
         false => BLOCK_CELL,
-    };
-    let before = body.and_then(|body| scene.body.get(body));
-    let cell = before
-        .and_then(|body| body.voxels.as_ref())
-        .map_or(cell, |voxels| voxels.voxel_size);
+    });
     let (mut voxels, _) = drawing.voxels(cell)?;
-    let mut numbers = [0u8; 256];
-    for (number, material) in (1..).zip(palette.materials()) {
+    // A number without a material is drawn with the first one, so that no cell is lost.
+    let mut numbers = [1u8; 256];
+    numbers[0] = 0;
+    for (number, material) in (1..=u8::MAX).zip(palette.materials()) {
         if drawing.cells().contains(&number) {
             numbers[usize::from(number)] = number_in(&mut scene.material, material, MAX_MATERIALS);
         }
     }
     voxels.runs = renumbered(&voxels.runs, |number| numbers[usize::from(number)]);
-    let extent = extent_of(&voxels);
-    let centre = before.and_then(centre_of).unwrap_or(centre);
-    let mut at = centre - 0.5 * extent;
-    if scene.dim == 2 {
-        at.z = 0.0;
-    }
-    let text = BodyText {
-        voxels: Some(voxels),
-        at: at.to_array(),
-        ..BodyText::default()
-    };
-    match body.and_then(|body| scene.body.get_mut(body)) {
-        Some(known) => *known = text,
+    let known = body.filter(|&body| body < scene.body.len());
+    let before = known.and_then(|body| middle_of(scene, body));
+    let text = drawn(known.map(|body| &scene.body[body]), voxels);
+    let place = known.unwrap_or(scene.body.len());
+    match known {
+        Some(body) => scene.body[body] = text,
         None => scene.body.push(text),
     }
-    Some(
-        body.filter(|&body| body < scene.body.len())
-            .unwrap_or(scene.body.len() - 1),
-    )
+    if let Some(now) = middle_of(scene, place) {
+        let by = before.unwrap_or(centre) - now;
+        let at = &mut scene.body[place].at;
+        (at[0], at[1]) = (at[0] + by.x, at[1] + by.y);
+        if scene.dim == 3 {
+            at[2] += by.z;
+        }
+    }
+    Some(place)
 }
 
-/// Returns the middle of a body of voxels [m]; `None` for other bodies.
-fn centre_of(body: &BodyText) -> Option<Vec3> {
-    let voxels = body.voxels.as_ref()?;
-    Some(Vec3::from(body.at) + 0.5 * extent_of(voxels))
+/// Returns a body of voxels with the motion, layers and rotation of the body that it replaces.
+fn drawn(before: Option<&BodyText>, voxels: VoxelsText) -> BodyText {
+    let usual = BodyText::default();
+    let before = before.cloned().unwrap_or_default();
+    BodyText {
+        voxels: Some(voxels),
+        shape: None,
+        file: None,
+        model: None,
+        content: None,
+        state: None,
+        n: None,
+        fill: None,
+        plain: None,
+        keep_colours: None,
+        material: None,
+        width: usual.width,
+        proportions: usual.proportions,
+        colours: usual.colours,
+        part: usual.part,
+        ..before
+    }
 }
 
-/// Returns the size of a grid of voxels [m].
-fn extent_of(voxels: &VoxelsText) -> Vec3 {
-    let [x, y, z] = voxels.size.map(|count| count as f32 * voxels.voxel_size);
-    Vec3::new(x, y, z)
+fn middle_of(scene: &Scene, body: usize) -> Option<Vec3> {
+    let [low, high] = bounds(scene, Item::Body(body))?;
+    Some(0.5 * (low + high))
 }
 
 /// Returns run lengths with other numbers.
@@ -83,19 +97,34 @@ fn renumbered(runs: &str, number: impl Fn(u8) -> u8) -> String {
     runs.collect::<Vec<_>>().join(" ")
 }
 
-/// Brings a body of a scene to the paper: returns its drawing and the crayons that it needs. `None` if the scene has no
-/// such body.
+/// Drawing of a body of a scene.
+pub struct Taken {
+    /// The drawing.
+    pub drawing: Drawing,
+    /// Edge length of a cell [m], by which the body keeps its size.
+    pub cell: f32,
+}
+
+/// Brings a body of a scene to the paper. Its materials are added to the palette. `None` if the scene has no such body.
 ///
 /// # Errors
 /// [`SceneError`] if the body cannot be built.
-pub fn take(scene: &Scene, body: usize) -> Result<Option<(Drawing, Palette)>, SceneError> {
+pub fn take(
+    scene: &Scene,
+    body: usize,
+    palette: &mut Palette,
+) -> Result<Option<Taken>, SceneError> {
     match scene.dim {
-        2 => taken::<Dim2>(scene, body),
-        _ => taken::<Dim3>(scene, body),
+        2 => taken::<Dim2>(scene, body, palette),
+        _ => taken::<Dim3>(scene, body, palette),
     }
 }
 
-fn taken<D: Dim>(scene: &Scene, body: usize) -> Result<Option<(Drawing, Palette)>, SceneError> {
+fn taken<D: Dim>(
+    scene: &Scene,
+    body: usize,
+    palette: &mut Palette,
+) -> Result<Option<Taken>, SceneError> {
     let Some(text) = scene.body.get(body) else {
         return Ok(None);
     };
@@ -115,8 +144,8 @@ fn taken<D: Dim>(scene: &Scene, body: usize) -> Result<Option<(Drawing, Palette)
     let Some(grid) = tinted.as_ref().or(plain) else {
         return Ok(None);
     };
-    let mut palette = Palette::default();
-    let numbers: Vec<u8> = (scene.material.iter())
+    let materials = scene.material.iter();
+    let numbers: Vec<u8> = materials
         .map(|material| palette.number_of(material))
         .collect();
     let grid = grid_with(grid, |material| {
@@ -124,7 +153,18 @@ fn taken<D: Dim>(scene: &Scene, body: usize) -> Result<Option<(Drawing, Palette)
         let known = place.and_then(|place| numbers.get(place));
         known.copied().unwrap_or(1)
     });
-    Ok(Some((Drawing::of_grid(&grid), palette)))
+    let drawing = Drawing::of_grid(&grid);
+    // A grid that is too large for the sheet has fewer, larger cells there.
+    let longest = grid.size().into_iter().max().unwrap_or(1) as f32;
+    let shown = drawing.bounds().map_or(1, |[low, high]| {
+        let lengths = [0, 1, 2].map(|axis: usize| high[axis] + 1 - low[axis]);
+        lengths.into_iter().max().unwrap_or(1)
+    });
+    let scale = (longest / shown as f32).max(1.0);
+    let fits = grid.size().map(|count| count as usize);
+    let is_whole = (0..3).all(|axis| fits[axis] <= drawing.size()[axis]);
+    let cell = grid.voxel_size() * if is_whole { 1.0 } else { scale };
+    Ok(Some(Taken { drawing, cell }))
 }
 
 /// Returns a grid with other material numbers for its solid voxels.
@@ -159,40 +199,68 @@ mod tests {
             drawing.end_stroke();
             drawing.stroke(middle, middle, 2.0, Brush::Paint(stone));
             drawing.end_stroke();
-            let mut scene = blank(dim);
-            let body = put(&mut scene, None, &drawing, &Palette::default(), Vec3::ONE);
+            let (mut scene, mut palette) = (blank(dim), Palette::default());
+            let body = put(&mut scene, None, &drawing, &palette, (Vec3::ONE, None));
             assert_eq!(body, Some(0));
             assert_eq!(scene.material, [crayon(Stuff::Clay), crayon(Stuff::Stone)]);
-            let (again, palette) = take(&scene, 0).unwrap().unwrap();
+            let again = take(&scene, 0, &mut palette).unwrap().unwrap();
             assert_eq!(palette, Palette::default());
             let count = |drawing: &Drawing, crayon| {
-                drawing
-                    .cells()
-                    .iter()
-                    .filter(|&&cell| cell == crayon)
-                    .count()
+                let cells = drawing.cells().iter();
+                cells.filter(|&&cell| cell == crayon).count()
             };
             for crayon in [clay, stone] {
                 assert!(count(&drawing, crayon) > 0);
-                assert_eq!(count(&again, crayon), count(&drawing, crayon), "{dim}D");
+                assert_eq!(count(&again.drawing, crayon), count(&drawing, crayon));
             }
-            let same = put(&mut scene, body, &again, &palette, Vec3::ZERO);
+            let known = scene.clone();
+            let place = (Vec3::ZERO, Some(again.cell));
+            let same = put(&mut scene, body, &again.drawing, &palette, place);
             assert_eq!((same, scene.body.len()), (body, 1));
-            let centre = centre_of(&scene.body[0]).unwrap();
-            let expected = if dim == 2 {
-                Vec3::new(1.0, 1.0, centre.z)
-            } else {
-                Vec3::ONE
-            };
-            assert!((centre - expected).length() < 1e-3, "{centre}");
+            let [before, after] = [&known, &scene].map(|scene| middle_of(scene, 0).unwrap());
+            assert!((after - before).length() < 1e-3, "{after}");
+            let length = scene.body[0].voxels.as_ref().unwrap().voxel_size;
+            assert_eq!(length, known.body[0].voxels.as_ref().unwrap().voxel_size);
         }
+    }
+
+    #[test]
+    fn redrawn_body_keeps_its_place_rotation_weight_and_size() {
+        let text = "dim = 2\n[[body]]\nshape = \"box\"\nn = 20\nwidth = 0.5\nat = [0.3, 0.4, 0.0]\n\
+                    rotation_vector = [0.0, 0.0, 0.5]\ngravity_scale = 0.2";
+        let mut scene = Scene::read("turned", text, &[]).unwrap();
+        let before = bounds(&scene, Item::Body(0)).unwrap();
+        let mut palette = Palette::default();
+        let taken = take(&scene, 0, &mut palette).unwrap().unwrap();
+        let place = (Vec3::ZERO, Some(taken.cell));
+        put(&mut scene, Some(0), &taken.drawing, &palette, place);
+        let after = bounds(&scene, Item::Body(0)).unwrap();
+        for (a, b) in before.into_iter().zip(after) {
+            assert!((a - b).length() < 1e-3, "{a} {b}");
+        }
+        assert_eq!(scene.body[0].gravity_scale, Some(0.2));
+        assert!(scene.body[0].voxels.is_some() && scene.body[0].shape.is_none());
     }
 
     #[test]
     fn empty_drawing_adds_nothing() {
         let mut scene = blank(2);
         let drawing = Drawing::paper();
-        let put = put(&mut scene, None, &drawing, &Palette::default(), Vec3::ZERO);
+        let place = (Vec3::ZERO, None);
+        let put = put(&mut scene, None, &drawing, &Palette::default(), place);
         assert!(put.is_none() && scene.body.is_empty() && scene.material.is_empty());
+    }
+
+    #[test]
+    fn number_without_a_material_is_drawn_with_the_first_one() {
+        let mut drawing = Drawing::paper();
+        let middle = Vec3::new(32.0, 32.0, 0.5);
+        drawing.stroke(middle, middle, 4.0, Brush::Draw(u8::MAX));
+        drawing.end_stroke();
+        let (mut scene, mut palette) = (blank(2), Palette::default());
+        put(&mut scene, None, &drawing, &palette, (Vec3::ZERO, None));
+        scene.material.push(crayon(Stuff::Jelly));
+        let again = take(&scene, 0, &mut palette).unwrap().unwrap();
+        assert_eq!(again.drawing.solid_count(), drawing.solid_count());
     }
 }

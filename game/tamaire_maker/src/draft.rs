@@ -2,26 +2,14 @@
 
 use crate::document::{merged, written};
 use crate::history::History;
-use crate::items::is_possible;
 use fuwafuwa_scenes::Scene;
-use fuwafuwa_scenes::scene::{GameText, HandText};
+use fuwafuwa_scenes::scene::GameText;
 use std::sync::Arc;
+use tamaire_play::Level;
 use tamaire_play::level::LevelError;
-use tamaire_play::{Level, Wish};
-
-pub use crate::items::{Guide, aligned, snapped};
 
 /// Maximum length of the name of a level [characters].
 pub const MAX_NAME: usize = 60;
-
-/// Maximum number of goals of a level.
-pub const MAX_GOALS: usize = 8;
-
-/// Largest gravity on each axis [m/s²].
-const MAX_GRAVITY: f32 = 40.0;
-
-/// Smallest and largest radius of a hand [m].
-const HAND_RADII: [f32; 2] = [0.03, 0.3];
 
 /// Name of a new level as long as it has no other one.
 const NEW: &str = "new-level";
@@ -58,6 +46,7 @@ impl Draft {
     pub fn of_level(level: &Level, text: Option<&str>) -> Self {
         let mut scene = level.scene().clone();
         if let Some(game) = &mut scene.game {
+            // A level file may not claim assists: only a recorded round does, for those that its player used.
             game.assists.clear();
         }
         let read =
@@ -125,14 +114,14 @@ impl Draft {
         true
     }
 
+    /// Returns the scene as it is shown. Equal pointers mean equal scenes.
+    pub fn shared_scene(&self) -> &Arc<Scene> {
+        self.preview.as_ref().unwrap_or(self.history.present())
+    }
+
     /// Returns the scene without what is being dragged.
     pub fn scene_before(&self) -> &Scene {
         self.history.present()
-    }
-
-    /// Forgets the preview.
-    pub fn cancel(&mut self) {
-        self.preview = None;
     }
 
     /// Whether there is a step to undo, or a preview.
@@ -156,11 +145,6 @@ impl Draft {
         self.history.redo()
     }
 
-    /// Whether the scene differs from that with which the draft began.
-    pub fn is_changed(&self) -> bool {
-        *self.scene() != *self.start
-    }
-
     /// Returns the level.
     ///
     /// # Errors
@@ -169,8 +153,8 @@ impl Draft {
         Level::from_scene(&self.id, self.scene().clone())
     }
 
-    /// Returns the text of the level. It keeps the comments of the text from which it was read. Empty only if the scene has
-    /// numbers that have no form in TOML.
+    /// Returns the text of the level, with the comments of the text from which it was read. The result is empty if the scene
+    /// has a value that TOML cannot express, for example `user_data` above `i64::MAX`.
     pub fn text(&self) -> String {
         let text = match &self.source {
             Some((text, before)) => merged(text, before, self.scene()),
@@ -213,96 +197,15 @@ impl Draft {
     }
 
     /// Sets the name in a language. Control characters and spaces around it are removed, and it is cut to
-    /// [`MAX_NAME`] characters. An empty Japanese name is removed; an empty English one changes nothing.
+    /// [`MAX_NAME`] characters. An empty Japanese name is removed. A level with an empty English name cannot be played.
     pub fn set_name(&mut self, language: Language, name: &str) {
         let shown: String = name.chars().filter(|letter| !letter.is_control()).collect();
         let cut: String = shown.trim().chars().take(MAX_NAME).collect();
         let name = cut.trim_end().to_owned();
         self.change_game(|game| match language {
-            Language::English if name.is_empty() => {}
             Language::English => game.name.en = name,
             Language::Japanese => game.name.ja = Some(name).filter(|name| !name.is_empty()),
         });
-    }
-
-    /// Sets the goals. Those that the level cannot have are left out, and all after the first [`MAX_GOALS`].
-    pub fn set_goals(&mut self, goals: Vec<Wish>) {
-        self.change(|scene| {
-            let mut goals = goals;
-            goals.retain(|goal| is_possible(scene, goal));
-            goals.truncate(MAX_GOALS);
-            if let Some(game) = &mut scene.game {
-                game.wish = goals;
-            }
-        });
-    }
-
-    /// Sets the share of the mass that must rest in the basket, 0.01 to 1.
-    pub fn set_share(&mut self, share: f32) {
-        self.change_game(|game| set_within(&mut game.share, share, 0.01, 1.0));
-    }
-
-    /// Sets the time for which the mass must rest in the basket [s], 0 to 60; at least 0.1 if no hand may touch it there.
-    pub fn set_hold(&mut self, hold: f32) {
-        self.change_game(|game| {
-            let least = if game.alone { 0.1 } else { 0.0 };
-            set_within(&mut game.hold, hold, least, 60.0);
-        });
-    }
-
-    /// Sets whether the basket counts only while no hand touches a piece in it.
-    pub fn set_alone(&mut self, alone: bool) {
-        self.change_game(|game| {
-            game.alone = alone;
-            if alone && game.hold <= 0.0 {
-                game.hold = 1.0;
-            }
-        });
-    }
-
-    /// Sets gravity [m/s²], up to 40 on each axis. The third coordinate is ignored in 2D.
-    pub fn set_gravity(&mut self, gravity: [f32; 3]) {
-        self.change(|scene| {
-            for axis in 0..usize::from(scene.dim.clamp(2, 3)) {
-                set_within(
-                    &mut scene.gravity[axis],
-                    gravity[axis],
-                    -MAX_GRAVITY,
-                    MAX_GRAVITY,
-                );
-            }
-        });
-    }
-
-    /// Sets the drag of the air [1/s], 0 to 10.
-    pub fn set_drag(&mut self, drag: f32) {
-        self.change(|scene| set_within(&mut scene.drag, drag, 0.0, 10.0));
-    }
-
-    /// Sets the radius of the hands of players that are balls [m], 0.03 to 0.3, and at most 0.44 of the width of the view.
-    pub fn set_hand_size(&mut self, radius: f32) {
-        self.change(|scene| {
-            let [low, high] = scene.view;
-            let axes = 0..usize::from(scene.dim.clamp(2, 3));
-            let room = axes
-                .map(|axis| high[axis] - low[axis])
-                .fold(f32::INFINITY, f32::min);
-            let [least, most] = HAND_RADII;
-            let most = most.min(0.44 * room).max(least);
-            let leads = |hand: &&mut HandText| hand.follows.is_none();
-            for hand in scene.hand.iter_mut().filter(leads) {
-                if let Some(own) = &mut hand.radius {
-                    set_within(own, radius, least, most);
-                }
-            }
-        });
-    }
-}
-
-/// Sets a number to a value within a range. Leaves it if the value is not a number.
-fn set_within(number: &mut f32, value: f32, low: f32, high: f32) {
-    if !value.is_nan() {
-        *number = value.clamp(low, high);
     }
 }
 

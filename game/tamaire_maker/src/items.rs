@@ -1,14 +1,15 @@
 //! Everything that has a place in a level: what can be selected, moved, copied, removed and added.
 //!
 //! The operations keep a level playable: numbers that name other things follow, things that hold to moved ones move along,
-//! and sizes and coordinates stay in their ranges. Only three things can still make a level unplayable: bodies outside the
-//! view, more voxels than a level may have, and a name that is missing or too long.
+//! and sizes and coordinates stay in their ranges. Through these operations, only three things can make a level unplayable:
+//! bodies outside the view, more voxels than a level may have, and a name that is missing or too long.
 
 mod additions;
 mod arrangement;
 mod bounds;
 mod clip;
 mod goals;
+mod layers;
 mod motion;
 mod movement;
 mod removal;
@@ -19,15 +20,16 @@ pub use additions::{Kind, add};
 pub use arrangement::{Guide, aligned, free_place, snapped};
 pub use bounds::bounds;
 pub use clip::{Clip, copy, paste};
-pub use goals::is_possible;
+pub use layers::{Stops, set_stops, stops_of};
 pub use movement::{rotate, stretch, translate};
 pub use removal::{Dropped, Removed, remove};
 
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{
-    Form, HandText, JointAnchorText, JointKindText, KnifeText, ObstacleText,
+    Form, HandText, JointAnchorText, JointKindText, KnifeText, MotionTypeText, ObstacleText,
 };
+use goals::is_possible;
 use std::collections::BTreeSet;
 use tamaire_play::playground::Stuff;
 
@@ -87,7 +89,7 @@ impl Item {
     }
 
     /// Returns whether a scene has the item.
-    pub fn is_in(self, scene: &Scene) -> bool {
+    fn is_in(self, scene: &Scene) -> bool {
         match self {
             Self::Body(index) => index < scene.body.len(),
             Self::Obstacle(index) => index < scene.obstacle.len(),
@@ -111,7 +113,14 @@ pub fn kind_of(scene: &Scene, item: Item) -> Option<Kind> {
         }),
         Item::Obstacle(index) => scene.obstacle.get(index).map(kind_of_obstacle),
         Item::Hand(_) => None,
-        Item::RigidBody(index) => scene.rigid_body.get(index).map(|_| Kind::Plank),
+        Item::RigidBody(index) => scene
+            .rigid_body
+            .get(index)
+            .map(|text| match text.motion_type {
+                // A box of an obstacle that was turned.
+                MotionTypeText::Fixed => Kind::Wall,
+                _ => Kind::Plank,
+            }),
         Item::Joint(index) => scene.joint.get(index).map(|joint| match joint.kind {
             JointKindText::Rope => Kind::Rope,
             JointKindText::Spring => Kind::Spring,

@@ -5,10 +5,10 @@
 //! - [`history`]: undo and redo
 //! - [`drawing`]: bodies drawn with crayons, on paper or in space
 //! - [`palette`]: the materials of crayons
-//! - [`body`]: drawings as bodies of levels, and back
 //! - [`items`]: everything that has a place in a level
-//! - [`draft`]: a level that is being edited
+//! - [`body`]: drawings as bodies of levels, and back
 //! - [`document`]: the text of an edited level
+//! - [`draft`]: a level that is being edited
 //! - [`check`]: checks of a level before it is kept
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

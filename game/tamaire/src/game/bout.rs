@@ -103,7 +103,7 @@ impl CurrentRound {
         self.cheered = 0.0;
     }
 
-    /// Shows a room that nobody plays, with the camera and the view as they are.
+    /// Shows the room of a level in the editor. The camera and the view stay.
     pub(super) fn show(&mut self, session: Session) {
         let view = self.view;
         self.begin(session, 0.0);

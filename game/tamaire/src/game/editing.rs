@@ -1,15 +1,14 @@
 //! Editing of a level: selection, drags, and the room that shows the level.
 
-use super::sharing::is_made_here;
+use super::sharing::{is_made_here, origin_of};
 use super::{Game, Screen};
 use crate::session::Session;
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
 use std::sync::Arc;
 use tamaire_maker::draft::{Draft, Language};
-use tamaire_maker::items::{self, Clip, Guide, Item, Kind};
+use tamaire_maker::items::{self, Clip, Dropped, Guide, Item, Kind};
 use tamaire_play::Level;
-use tamaire_play::level::LevelError;
 
 /// Distance between two lines of the grid to which things snap [m].
 pub const GRID: f32 = 0.05;
@@ -82,6 +81,11 @@ pub enum Drag {
 }
 
 impl Editor {
+    /// Notes that the round in the room is no test, or no longer.
+    pub(super) fn end_test(&mut self) {
+        (self.is_test, self.returns) = (false, false);
+    }
+
     /// Whether an item of the level as it is shown is selected.
     pub fn is_selected(&self, item: Item) -> bool {
         self.turned
@@ -90,7 +94,8 @@ impl Editor {
             .contains(&item)
     }
 
-    fn forget(&mut self) {
+    /// Forgets everything except what was copied and whether things snap.
+    fn reset(&mut self) {
         let snaps = self.snaps;
         *self = Self {
             clip: self.clip.take(),
@@ -168,7 +173,7 @@ impl Game {
         (maker.won, maker.check, maker.typed_name) = (None, None, None);
         maker.origin = origin;
         maker.saved = Some(maker.draft.scene().clone());
-        maker.editor.forget();
+        maker.editor.reset();
         maker.editor.snaps = true;
         self.go(Screen::Editor);
     }
@@ -202,11 +207,7 @@ impl Game {
                 self.bout.show(session);
             }
             Err(error) => {
-                let is_outside = matches!(error, LevelError::NoGame { field: "body", .. });
-                self.maker.editor.problem = Some(match is_outside {
-                    true => self.making().body_outside.to_string(),
-                    false => (self.words().level_error)(&error),
-                });
+                self.maker.editor.problem = Some(self.told(&error));
             }
         }
         self.maker.editor.is_slow = self.clock.now() - began > QUICK;
@@ -268,6 +269,7 @@ impl Game {
             (true, false) => editor.selection.push(item),
             (false, _) => editor.selection = items::with_bars(self.maker.draft.scene(), item),
         }
+        editor.moves_by_keys &= !editor.selection.is_empty();
         editor.part = match editor.selection.is_empty() {
             true => EditorPart::Things,
             false => EditorPart::Selection,
@@ -318,13 +320,21 @@ impl Game {
         if !removed.refused.is_empty() {
             self.notify(self.making().last_one_stays.to_string());
         }
-        if !removed.dropped.is_empty() {
+        let (counted, goals): (Vec<&Dropped>, Vec<&Dropped>) =
+            { removed.dropped.iter() }.partition(|dropped| matches!(dropped, Dropped::Counted(_)));
+        if !goals.is_empty() {
             self.notify(self.making().goal_dropped.to_string());
+        }
+        if !counted.is_empty() {
+            self.notify(self.making().all_count.to_string());
         }
     }
 
     /// Copies the selection.
     pub fn copy_selection(&mut self) {
+        if self.maker.editor.selection.is_empty() {
+            return;
+        }
         let scene = self.maker.draft.scene();
         self.maker.editor.clip = Some(items::copy(scene, &self.maker.editor.selection));
         self.notify(self.making().copied.to_string());
@@ -365,7 +375,7 @@ impl Game {
         let boxes = self.maker.editor.selection.iter().filter(stays);
         let boxes = boxes.filter_map(|&item| items::bounds(scene, item));
         boxes.fold(by, |by, [from, to]| {
-            // What is partly outside may come nearer.
+            // A thing that is partly outside is not pushed farther out.
             by.max((low - from).min(Vec3::ZERO))
                 .min((high - to).max(Vec3::ZERO))
         })
@@ -408,7 +418,7 @@ impl Game {
                 self.begin(Session::of_people(Arc::new(level)));
                 self.maker.editor.is_test = true;
             }
-            Err(error) => self.notify((self.words().level_error)(&error)),
+            Err(error) => self.notify(self.told(&error)),
         }
     }
 
@@ -438,14 +448,5 @@ impl Game {
             return None;
         }
         Some(HOMEWARD * seconds)
-    }
-}
-
-/// Returns the name of a level and of its maker, as the origin of another level.
-fn origin_of(level: &Level) -> String {
-    let game = level.game();
-    match &game.made_by {
-        Some(maker) => format!("{} ({maker})", game.name.en),
-        None => game.name.en.clone(),
     }
 }

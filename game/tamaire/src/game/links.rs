@@ -1,7 +1,7 @@
 //! Links to rounds and levels, which are the fragment of a web address.
 
 use super::{Game, Screen};
-use crate::platform::address_of_page;
+use crate::platform::{MOST_LEVELS, address_of_page};
 use std::sync::Arc;
 use tamaire_play::link::{Link, LinkError, address};
 use tamaire_play::{Level, Replay, ReplayError};
@@ -25,7 +25,7 @@ impl Game {
         self.copy(link);
     }
 
-    fn copy(&mut self, link: Result<String, LinkError>) {
+    pub(super) fn copy(&mut self, link: Result<String, LinkError>) {
         match link {
             Ok(link) => self.copied = Some(address(&address_of_page(), &link)),
             Err(error) => self.notify((self.words().link_error)(&error)),
@@ -47,6 +47,9 @@ impl Game {
     pub fn play_offered(&mut self) {
         if let Some((_, level)) = self.offered.take() {
             let known = self.levels.iter().position(|known| *known == level);
+            if known.is_none() && self.has_all_own_levels() {
+                return self.notify((self.making().own_full)(MOST_LEVELS));
+            }
             let index = known.unwrap_or_else(|| {
                 self.add_own(Level::clone(&level));
                 self.levels.len() - 1

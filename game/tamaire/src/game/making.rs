@@ -1,5 +1,6 @@
 //! Making of bodies and levels: the paper, the block of voxels, and the level into which they go.
 
+use super::sharing::Summary;
 use super::{Editor, Game, Screen};
 use crate::session::Session;
 use egui::Vec2;
@@ -12,7 +13,7 @@ use std::sync::Arc;
 use tamaire_maker::body;
 use tamaire_maker::check::Check;
 use tamaire_maker::draft::Draft;
-use tamaire_maker::drawing::{Brush, Drawing};
+use tamaire_maker::drawing::{Brush, Drawing, PAPER, Pieces};
 use tamaire_maker::items::Item;
 use tamaire_maker::palette::{Palette, crayon};
 use tamaire_play::Replay;
@@ -46,12 +47,44 @@ const FRONT: [f32; 2] = [0.6, 0.45];
 /// Cells of a block for one of the paper.
 const IN_BLOCK: f32 = 0.7;
 
+/// What may surprise when a drawing is dropped.
+#[derive(Clone)]
+pub struct Flaws {
+    cells: Vec<u8>,
+    /// Separate pieces.
+    pub pieces: Pieces,
+    /// Whether each cell is in a part that is so thin that it breaks at a touch.
+    pub thin: Vec<bool>,
+}
+
+/// Where a drawing goes.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+enum Target {
+    /// Into an empty room, as its only body.
+    #[default]
+    Room,
+    /// Into the level in the editor, as a new body.
+    NewBody,
+    /// In place of the body of the level in the editor with this index.
+    Body(usize),
+}
+
+/// Picture that was brought to the paper.
+#[derive(Clone)]
+pub struct PaperPicture {
+    name: String,
+    bytes: Arc<[u8]>,
+    /// Maximum number of cells along its longer side.
+    pub across: usize,
+}
+
 /// The drawing in the making, and the level into which it goes.
 pub struct Maker {
     /// Drawing on the paper.
     pub paper: Drawing,
     /// Body of voxels.
     pub block: Drawing,
+    flaws: Flaws,
     /// Whether the block is shown, otherwise the paper.
     pub shows_block: bool,
     /// Materials of the drawings.
@@ -79,13 +112,14 @@ pub struct Maker {
     room: Draft,
     /// Level in the editor.
     pub draft: Draft,
-    /// Body of the level in the editor that is drawn: its index, or `None` for a new one. The outer `None` = the drawing
-    /// goes into the empty room.
-    target: Option<Option<usize>>,
+    /// Where the drawing goes.
+    target: Target,
+    /// Edge length of a cell [m] in the body that is redrawn; `None` for the usual one.
+    cell: Option<f32>,
     /// State of the editor.
     pub editor: Editor,
-    /// Picture that was brought to the paper: its name, its bytes, and the number of cells along its longer side.
-    pub picture: Option<(String, Vec<u8>, usize)>,
+    /// Picture on the paper, until anything else changes the drawing.
+    pub picture: Option<PaperPicture>,
     /// Name of the level as it is being typed.
     pub typed_name: Option<String>,
     /// Name of the level from which this one is made, unless it is the player's own.
@@ -94,6 +128,8 @@ pub struct Maker {
     pub saved: Option<Scene>,
     /// Checks of the level, from when they are first shown.
     pub check: Option<Check>,
+    /// Summary of the level in the editor, for the page on which it is finished.
+    pub(super) summary: Option<Summary>,
     /// Shortest win of the level by its maker.
     pub won: Option<Replay>,
     /// Whether the QR code is shown.
@@ -116,6 +152,11 @@ impl Default for Maker {
         Self {
             paper: Drawing::paper(),
             block: Drawing::block(),
+            flaws: Flaws {
+                cells: Vec::new(),
+                pieces: Drawing::paper().pieces(),
+                thin: Vec::new(),
+            },
             shows_block: false,
             palette: Palette::default(),
             crayon: 1,
@@ -129,13 +170,15 @@ impl Default for Maker {
             cursor: None,
             room: Draft::blank(2),
             draft: Draft::blank(2),
-            target: None,
+            target: Target::Room,
+            cell: None,
             editor: Editor::default(),
             picture: None,
             typed_name: None,
             saved: Some(Draft::blank(2).scene().clone()),
             origin: None,
             check: None,
+            summary: None,
             won: None,
             shows_code: false,
         }
@@ -149,6 +192,22 @@ impl Maker {
             true => &self.block,
             false => &self.paper,
         }
+    }
+
+    /// Returns the pieces and the thin cells of the drawing that is shown. They are computed again when cells have changed.
+    pub fn flaws(&mut self) -> &Flaws {
+        let drawing = match self.shows_block {
+            true => &self.block,
+            false => &self.paper,
+        };
+        if self.flaws.cells != drawing.cells() {
+            self.flaws = Flaws {
+                cells: drawing.cells().to_vec(),
+                pieces: drawing.pieces(),
+                thin: drawing.thin_cells(),
+            };
+        }
+        &self.flaws
     }
 
     /// Returns the drawing that is shown, to change it.
@@ -170,8 +229,8 @@ impl Maker {
         2.0 * STAMP * self.radius()
     }
 
-    /// Draws from the last point of the stroke to `at` [cells] with the chosen tool. A pen that is pressed harder than
-    /// usual, at 1, draws wider. Returns whether anything has changed.
+    /// Draws from the last point of the stroke to `at` [cells] with the chosen tool. `pressure` is the factor on the width of
+    /// the stroke, 1 without a pen that feels pressure. Returns whether anything has changed.
     pub fn draw_to(&mut self, at: Vec3, pressure: f32) -> bool {
         let (tool, crayon, radius) = (self.tool, self.crayon, pressure * self.radius());
         let (from, width) = (self.pen.unwrap_or(at), self.stamp_width());
@@ -207,24 +266,27 @@ impl Maker {
 
     /// Whether the drawing may become a body in 3D: it is alone, or its level is in 3D.
     pub fn may_turn_solid(&self) -> bool {
-        self.target.is_none() || self.draft.scene().dim == 3
+        self.is_alone() || self.draft.scene().dim == 3
     }
 
     /// Whether the drawing goes into an empty room.
     pub fn is_alone(&self) -> bool {
-        self.target.is_none()
+        self.target == Target::Room
     }
 
-    /// Whether the paper may be used for a body: a level in 3D takes only blocks.
+    /// Whether the drawing that is shown has the dimension of its level: a level in 3D takes blocks, a flat one takes paper.
     pub fn may_drop(&self) -> bool {
-        self.target.is_none() || (self.draft.scene().dim == 3) == self.shows_block
+        self.is_alone() || (self.draft.scene().dim == 3) == self.shows_block
     }
 
-    /// Shows the paper or the block. A room for the drawing alone follows.
+    /// Shows the paper or the block.
     pub fn show_block(&mut self, shows_block: bool) {
         self.lift_pen();
-        self.cursor = None;
+        (self.cursor, self.picture) = (None, None);
         self.shows_block = shows_block;
+        if shows_block && self.tool == DrawingTool::Bucket {
+            self.tool = DrawingTool::Crayon;
+        }
     }
 
     /// Makes the drawing on the paper a block, and shows it.
@@ -244,27 +306,31 @@ impl Maker {
             return false;
         }
         let dim = if self.shows_block { 3 } else { 2 };
-        if self.target.is_none() && self.room.scene().dim != dim {
+        if self.is_alone() && self.room.scene().dim != dim {
             self.room = Draft::blank(dim);
         }
         let (drawing, palette) = (self.drawing().clone(), self.palette.clone());
         let (draft, body) = match self.target {
             // The drawing takes the place of the body of the empty room.
-            None => (&mut self.room, Some(0)),
-            Some(body) => (&mut self.draft, body),
+            Target::Room => (&mut self.room, Some(0)),
+            Target::NewBody => (&mut self.draft, None),
+            Target::Body(body) => (&mut self.draft, Some(body)),
         };
         let [low, high] = draft.scene().view.map(Vec3::from);
         let middle = 0.5 * (low + high);
-        let stands = self.target.is_none() || body.is_none();
+        let stands = !matches!(self.target, Target::Body(_));
+        let place = (middle, self.cell);
         let put = draft.change(|scene| {
-            let put = body::put(scene, body, &drawing, &palette, middle)?;
+            let put = body::put(scene, body, &drawing, &palette, place)?;
             if stands {
                 // It stands on the floor of the room, so that it does not break in a fall.
                 scene.body[put].at[1] = low.y + ABOVE_FLOOR;
             }
             Some(put)
         });
-        self.target = self.target.map(|_| put);
+        if let (false, Some(put)) = (self.is_alone(), put) {
+            self.target = Target::Body(put);
+        }
         true
     }
 
@@ -278,7 +344,8 @@ impl Maker {
 impl Game {
     /// Opens the paper for a drawing that is dropped into an empty room.
     pub fn open_paper(&mut self) {
-        self.maker.target = None;
+        self.maker.target = Target::Room;
+        self.maker.cell = None;
         self.maker.tool = DrawingTool::Crayon;
         self.go(Screen::Paper);
     }
@@ -286,43 +353,56 @@ impl Game {
     /// Drops the drawing into the room and starts a round there.
     pub fn drop_drawing(&mut self) {
         if !self.maker.may_drop() {
-            return self.notify(self.making().make_block_first.to_string());
+            let words = self.making();
+            let told = match self.maker.shows_block {
+                true => words.flat_level,
+                false => words.make_block_first,
+            };
+            return self.notify(told.to_string());
         }
         if !self.maker.put_drawing() {
             return self.notify(self.making().draw_first.to_string());
         }
-        if let Some(body) = self.maker.target {
+        if let Target::Body(body) = self.maker.target {
             self.go(Screen::Editor);
-            if let Some(body) = body {
-                self.select(Item::Body(body));
-            }
-            return;
+            return self.select(Item::Body(body));
         }
         match self.maker.room.level() {
             Ok(level) => {
                 self.bout.camera.face_front();
                 self.begin(Session::of_people(Arc::new(level)));
             }
-            Err(error) => self.notify((self.words().level_error)(&error)),
+            Err(error) => self.notify(self.told(&error)),
         }
     }
 
-    /// Draws a picture or model on the paper or as a block. A picture is at most `across` cells wide and high.
-    pub fn draw_picture(&mut self, name: String, bytes: Vec<u8>, across: usize) {
-        match imported(&name, &bytes, across) {
-            Ok((scene, drawing, palette)) => {
+    /// Draws a picture or model on the paper or as a block.
+    pub fn draw_picture(&mut self, name: String, bytes: Vec<u8>) {
+        self.show_picture(PaperPicture {
+            name,
+            bytes: bytes.into(),
+            across: PAPER,
+        });
+    }
+
+    /// Draws the picture on the paper again, at most `across` cells wide and high.
+    pub fn redraw_picture(&mut self, across: usize) {
+        if let Some(picture) = self.maker.picture.take() {
+            self.show_picture(PaperPicture { across, ..picture });
+        }
+    }
+
+    fn show_picture(&mut self, picture: PaperPicture) {
+        match imported(&picture, &mut self.maker.palette) {
+            Ok((scene, drawing)) => {
                 let maker = &mut self.maker;
                 maker.show_block(!drawing.is_paper());
-                maker.palette = palette;
                 maker.drawing_mut().replace(&drawing);
                 let notes = scene.notes().iter().map(self.words().import_note);
                 notes.for_each(|note| self.notices.tell(&note));
-                self.maker.picture = drawing.is_paper().then_some((name, bytes, across));
+                self.maker.picture = drawing.is_paper().then_some(picture);
             }
-            Err(error) => {
-                let error = LevelError::Scene(error);
-                self.notify((self.words().level_error)(&error));
-            }
+            Err(error) => self.notify(self.told(&LevelError::Scene(error))),
         }
     }
 
@@ -331,26 +411,25 @@ impl Game {
         let [Item::Body(index)] = self.maker.editor.selection[..] else {
             return;
         };
-        match body::take(self.maker.draft.scene(), index) {
-            Ok(Some((drawing, palette))) => {
-                let maker = &mut self.maker;
-                maker.shows_block = !drawing.is_paper();
-                *maker.drawing_mut() = drawing;
-                (maker.palette, maker.target) = (palette, Some(Some(index)));
+        let maker = &mut self.maker;
+        match body::take(maker.draft.scene(), index, &mut maker.palette) {
+            Ok(Some(taken)) => {
+                maker.show_block(!taken.drawing.is_paper());
+                *maker.drawing_mut() = taken.drawing;
+                (maker.target, maker.cell) = (Target::Body(index), Some(taken.cell));
                 self.go(Screen::Paper);
             }
             Ok(None) => {}
-            Err(error) => self.notify(error.to_string()),
+            Err(error) => self.notify(self.told(&LevelError::Scene(error))),
         }
     }
 
     /// Opens the paper for a new body of the level.
     pub fn draw_new_body(&mut self) {
         let maker = &mut self.maker;
-        maker.shows_block = maker.draft.scene().dim == 3;
+        maker.show_block(maker.draft.scene().dim == 3);
         (maker.paper, maker.block) = (Drawing::paper(), Drawing::block());
-        maker.palette = Palette::default();
-        maker.target = Some(None);
+        (maker.target, maker.cell) = (Target::NewBody, None);
         self.go(Screen::Paper);
     }
 
@@ -360,19 +439,20 @@ impl Game {
     }
 }
 
-/// Returns the drawing of a picture or model, with the scene into which it was read.
-fn imported(
-    name: &str,
-    bytes: &[u8],
-    across: usize,
-) -> Result<(Scene, Drawing, Palette), SceneError> {
+/// Returns the drawing of a picture or model, with the scene into which it was read. Its colours are added to the palette.
+fn imported(picture: &PaperPicture, palette: &mut Palette) -> Result<(Scene, Drawing), SceneError> {
+    let PaperPicture {
+        name,
+        bytes,
+        across,
+    } = picture;
     let is_model = FileType::of(bytes) == FileType::Vox;
     let dim = if is_model { 3 } else { 2 };
     let mut scene = Scene::read(name, &format!("dim = {dim}\nmaterial = []"), &[])?;
     scene.material.push(crayon(Stuff::Jelly));
     scene.body.push(BodyText {
-        file: Some(name.into()),
-        n: (!is_model).then_some(across),
+        file: Some(name.clone()),
+        n: (!is_model).then_some(*across),
         keep_colours: (!is_model).then_some(true),
         colours: match is_model {
             true => (1..=u8::MAX).map(|index| (index.to_string(), 1)).collect(),
@@ -381,7 +461,7 @@ fn imported(
         ..BodyText::default()
     });
     scene.embed_files(&|_| Ok(bytes.to_vec()))?;
-    let taken = body::take(&scene, 0)?;
-    let (drawing, palette) = taken.unwrap_or((Drawing::paper(), Palette::default()));
-    Ok((scene, drawing, palette))
+    let taken = body::take(&scene, 0, palette)?;
+    let drawing = taken.map_or_else(Drawing::paper, |taken| taken.drawing);
+    Ok((scene, drawing))
 }

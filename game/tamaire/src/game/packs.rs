@@ -75,6 +75,11 @@ impl Game {
         own.map(|index| &self.levels[index])
     }
 
+    /// Whether the player has as many levels as are read at the start.
+    pub(super) fn has_all_own_levels(&self) -> bool {
+        self.own_levels().count() >= MOST_LEVELS
+    }
+
     /// Whether the game has the level, perhaps under another id.
     fn has_scene_of(&self, level: &Level) -> bool {
         let mut scenes = self.levels.iter().map(|known| known.scene());
@@ -104,7 +109,7 @@ impl Game {
 /// Returns the name of a refused file and the reason, which may begin with the name.
 fn refusal(name: &str, reason: &str) -> String {
     let reason = shortened(reason, LETTERS);
-    match reason.contains(name) {
+    match reason.starts_with(name) {
         true => reason,
         false => format!("{}: {reason}", shortened(name, LETTERS)),
     }

@@ -1,13 +1,14 @@
 //! Checking, keeping and sending of levels that the player makes.
 
 use super::{Game, Maker, Screen};
-use crate::platform::address_of_page;
+use crate::platform::{MOST_LEVELS, address_of_page};
 use crate::qr::Code;
-use crate::words::{MakingWords, Words};
+use crate::words::MakingWords;
+use fuwafuwa_scenes::Scene;
 use std::sync::Arc;
 use tamaire_maker::check::Check;
 use tamaire_maker::draft::{Draft, Language};
-use tamaire_play::link::address;
+use tamaire_play::level::{LevelError, MAX_KEPT_BYTES};
 use tamaire_play::{Level, Replay};
 
 /// Maximum length of the name of a level or of its maker [characters].
@@ -31,16 +32,34 @@ pub(super) fn foreign_id(id: &str) -> String {
     }
 }
 
+/// What the page *Finish* shows of a level, computed once for each scene.
+pub struct Summary {
+    scene: Arc<Scene>,
+    /// The level, or why it cannot be played.
+    pub level: Result<Arc<Level>, LevelError>,
+    /// Shortest time in which its maker has won it [s].
+    pub won: Option<f32>,
+    /// QR code of the link to it, once it was asked for. The inner `None` = the level is too large for one.
+    code: Option<Option<Code>>,
+}
+
 impl Maker {
-    /// Returns why the level is not finished, in words for its maker. `None` if it can be kept.
-    pub fn problem(&self, said: &Words, words: &MakingWords) -> Option<String> {
-        let wrong = self
-            .draft
-            .level()
-            .err()
-            .map(|error| (said.level_error)(&error));
-        let has_name = !self.draft.name(Language::English).is_empty();
-        wrong.or_else(|| (!has_name).then(|| words.needs_name.to_string()))
+    /// Returns the summary of the level as it is now.
+    pub fn summary(&mut self) -> &mut Summary {
+        let scene = self.draft.shared_scene();
+        let is_known = |known: &Summary| Arc::ptr_eq(&known.scene, scene);
+        if !self.summary.as_ref().is_some_and(is_known) {
+            let level = self.draft.level().map(Arc::new);
+            let won = level.as_ref().ok().and_then(|level| self.win_of(level));
+            let won = won.and_then(|won| won.outcome);
+            self.summary = Some(Summary {
+                scene: scene.clone(),
+                won: won.map(|outcome| outcome.seconds()),
+                level,
+                code: None,
+            });
+        }
+        self.summary.as_mut().expect("the summary was just made")
     }
 
     /// Returns the win of the level as it is now by its maker, even if the level has another name since.
@@ -48,10 +67,17 @@ impl Maker {
         self.won.as_ref()?.renamed(level)
     }
 
-    /// Returns the shortest time in which its maker has won the level as it is now [s].
-    pub fn won_by_maker(&self) -> Option<f32> {
-        let won = self.win_of(&self.draft.level().ok()?)?;
-        won.outcome.map(|outcome| outcome.seconds())
+    /// Returns the scene with the names of its maker and of its origin.
+    fn credited(&self, maker: &str) -> Scene {
+        let mut scene = self.draft.scene().clone();
+        let maker = cleaned(maker);
+        if let Some(game) = &mut scene.game {
+            game.made_by = (!maker.is_empty()).then_some(maker);
+            if let Some(origin) = &self.origin {
+                game.changed_from = Some(origin.clone());
+            }
+        }
+        scene
     }
 }
 
@@ -94,27 +120,31 @@ impl Game {
 
     /// Notes that the maker has won the level, if the round is a test of it.
     pub(super) fn note_test_win(&mut self) {
-        if !self.is_test() {
+        let level = self.bout.round().level().clone();
+        let tested = self.maker.summary().level.as_ref().ok();
+        let is_tested = tested.is_some_and(|tested| tested.differs_only_in_names(&level));
+        if !self.is_test() || !is_tested {
             return;
         }
         let replay = self.bout.round().replay();
-        let level = self.bout.round().level();
-        let known = self.maker.win_of(level);
+        let known = self.maker.win_of(&level);
         if known.is_none_or(|known| replay.clock_ticks() < known.clock_ticks()) {
             self.maker.won = Some(replay);
+            self.maker.summary = None;
         }
     }
 
     /// Begins to check the level that is being edited, or goes on with it in a frame of `seconds` [s].
     pub fn check_draft(&mut self, seconds: f32) {
-        let Ok(level) = self.maker.draft.level() else {
+        let Ok(level) = self.maker.summary().level.as_ref().map(Arc::clone) else {
             self.maker.check = None;
             return;
         };
-        let is_known = { self.maker.check.as_ref() }
-            .is_some_and(|check| check.level().differs_only_in_names(&level));
+        let is_known = { self.maker.check.as_ref() }.is_some_and(|check| {
+            Arc::ptr_eq(check.level(), &level) || check.level().differs_only_in_names(&level)
+        });
         if !is_known {
-            self.maker.check = Some(Check::new(Arc::new(level)));
+            self.maker.check = Some(Check::new(level));
         }
         let clock = self.clock.clone();
         if let Some(check) = &mut self.maker.check {
@@ -124,20 +154,30 @@ impl Game {
         }
     }
 
+    /// Returns why the level that is being edited is not finished, in words for its maker. `None` if it can be kept.
+    pub fn draft_problem(&mut self) -> Option<String> {
+        if self.maker.draft.name(Language::English).trim().is_empty() {
+            return Some(self.making().needs_name.to_string());
+        }
+        let level = &self.maker.summary().level;
+        let is_outside = matches!(level, Err(LevelError::NoGame { field: "body", .. }));
+        let told = self.words().level_error;
+        match &self.maker.summary().level {
+            Ok(_) => None,
+            Err(_) if is_outside => Some(self.making().body_outside.to_string()),
+            Err(error) => Some(told(error)),
+        }
+    }
+
     /// Returns the level that is being edited with the names of its maker and of its origin, ready to be kept.
     fn finished(&mut self) -> Option<Level> {
         self.maker.draft.settle();
-        if let Some(problem) = self.maker.problem(self.words(), self.making()) {
+        if let Some(problem) = self.draft_problem() {
             self.notify(problem);
             return None;
         }
-        let maker = cleaned(&self.settings.maker_name);
-        self.maker
-            .draft
-            .set_maker((!maker.is_empty()).then_some(maker));
-        if let Some(origin) = &self.maker.origin {
-            self.maker.draft.set_origin(&cleaned(origin));
-        }
+        let credited = self.maker.credited(&self.settings.maker_name);
+        self.maker.draft.change(|scene| *scene = credited);
         self.maker.draft.level().ok()
     }
 
@@ -147,8 +187,17 @@ impl Game {
             return false;
         };
         level.id = self.free_id(&level);
+        let is_new = !self.levels.iter().any(|known| known.id == level.id);
+        if is_new && self.has_all_own_levels() {
+            self.notify((self.making().own_full)(MOST_LEVELS));
+            return false;
+        }
         self.maker.draft.set_id(&level.id);
         let text = self.maker.draft.text();
+        if text.is_empty() || text.len() as u64 > MAX_KEPT_BYTES {
+            self.notify(self.making().not_kept.to_string());
+            return false;
+        }
         let level = Arc::new(level);
         self.levels.retain(|known| known.id != level.id);
         self.levels.push(level.clone());
@@ -174,8 +223,15 @@ impl Game {
                 draft.set_name(language, &format!("{name} 2"));
             }
         }
-        let Ok(copy) = draft.level() else {
-            return;
+        if !is_made_here(&level.id) {
+            draft.set_origin(&origin_of(&level));
+        }
+        if self.has_all_own_levels() {
+            return self.notify((self.making().own_full)(MOST_LEVELS));
+        }
+        let copy = match draft.level() {
+            Ok(copy) => copy,
+            Err(error) => return self.notify(self.told(&error)),
         };
         level = copy;
         level.id = self.new_id();
@@ -206,21 +262,18 @@ impl Game {
         };
         // A round that is too long for a link is left out.
         let link = self.maker.win_of(&level).and_then(|won| won.link().ok());
-        match link.map_or_else(|| level.link(), Ok) {
-            Ok(link) => self.copied = Some(address(&address_of_page(), &link)),
-            Err(error) => self.notify((self.words().link_error)(&error)),
-        }
+        self.copy(link.map_or_else(|| level.link(), Ok));
     }
 
     /// Returns the QR code of the link to the level. `None` if the level is too large for one.
     pub fn code_of_draft(&mut self) -> Option<Code> {
-        let mut scene = self.maker.draft.scene().clone();
-        if let Some(game) = &mut scene.game {
-            let maker = cleaned(&self.settings.maker_name);
-            game.made_by = (!maker.is_empty()).then_some(maker);
+        if self.maker.summary().code.is_none() {
+            let credited = self.maker.credited(&self.settings.maker_name);
+            let level = Level::from_scene(self.maker.draft.id(), credited).ok();
+            let code = level.and_then(|level| Code::of_level(&address_of_page(), &level));
+            self.maker.summary().code = Some(code);
         }
-        let level = Level::from_scene(self.maker.draft.id(), scene).ok()?;
-        Code::of_level(&address_of_page(), &level)
+        self.maker.summary().code.clone().flatten()
     }
 
     /// Whether links lead to a page, so that a phone can open their QR codes.
@@ -247,8 +300,9 @@ impl Game {
     pub fn leave_editor(&mut self) {
         self.end_drag();
         let is_own = self.maker.origin.is_none();
-        if is_own && self.has_unsaved_level() && self.maker.draft.level().is_ok() {
-            self.keep_draft();
+        let is_kept = is_own && self.has_unsaved_level() && self.keep_draft();
+        if !is_kept && self.has_unsaved_level() {
+            self.notify(self.making().still_open.to_string());
         }
         self.screens.close(Screen::Editor);
         self.arrive();
@@ -258,36 +312,47 @@ impl Game {
 /// Returns who made a level and from which one it was made, as lines for the player.
 pub fn credits(level: &Level, words: &MakingWords) -> Vec<String> {
     let game = level.game();
-    let line = |name: &Option<String>, told: fn(&str) -> String| {
-        let name = cleaned(name.as_deref()?);
+    let line = |name: &Option<String>, most: usize, told: fn(&str) -> String| {
+        let name = plain(name.as_deref()?, most);
         (!name.is_empty()).then(|| told(&name))
     };
     let lines = [
-        line(&game.made_by, words.by),
-        line(&game.changed_from, words.changed_from),
+        line(&game.made_by, MOST_NAME, words.by),
+        // The names of a level and of its maker, in brackets.
+        line(&game.changed_from, 2 * MOST_NAME + 3, words.changed_from),
     ];
     lines.into_iter().flatten().collect()
+}
+
+/// Returns the name of a level and of its maker, as the origin of another level.
+pub(super) fn origin_of(level: &Level) -> String {
+    let game = level.game();
+    let name = cleaned(&game.name.en);
+    match game.made_by.as_deref().map(cleaned) {
+        Some(maker) if !maker.is_empty() => format!("{name} ({maker})"),
+        _ => name,
+    }
 }
 
 /// Returns a name that other people chose as plain text: without control characters and without characters that change
 /// the direction of writing, with single spaces, and at most [`MOST_NAME`] characters long.
 pub fn cleaned(name: &str) -> String {
+    plain(name, MOST_NAME)
+}
+
+/// Returns plain text as [`cleaned`] does, at most `most` characters long.
+fn plain(name: &str, most: usize) -> String {
     let is_plain = |letter: &char| {
         let turns = matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
         !letter.is_control() && !turns && *letter != '\u{feff}'
     };
-    let plain: String = name
+    let spaced = name
         .chars()
-        .map(|letter| if letter == '\t' { ' ' } else { letter })
-        .filter(is_plain)
-        .collect();
+        .map(|letter| if letter == '\t' { ' ' } else { letter });
+    let plain: String = spaced.filter(is_plain).collect();
     let words = plain.split_whitespace().collect::<Vec<_>>().join(" ");
-    words
-        .chars()
-        .take(MOST_NAME)
-        .collect::<String>()
-        .trim()
-        .to_string()
+    let cut: String = words.chars().take(most).collect();
+    cut.trim_end().to_string()
 }
 
 #[cfg(test)]

@@ -313,8 +313,16 @@ mod tests {
             hat || numbers.any(|number| number <= 12)
         };
         let missing: Vec<Action> = Action::ALL.into_iter().filter(|k| !is_there(k)).collect();
-        let rest = [Action::Step, Action::Make, Action::Deeper, Action::Shallower];
-        assert_eq!(missing, rest, "only display actions, and one that the pause menu offers, may be missing");
+        let rest = [
+            Action::Step,
+            Action::Make,
+            Action::Deeper,
+            Action::Shallower,
+        ];
+        assert_eq!(
+            missing, rest,
+            "only display actions, and one that the pause menu offers, may be missing"
+        );
     }
 
     #[test]

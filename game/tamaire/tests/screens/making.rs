@@ -78,7 +78,7 @@ fn voxels(window: &mut Window) -> usize {
 }
 
 #[test]
-fn own_drawing_is_in_the_hand_after_three_presses() {
+fn closed_line_is_dropped_with_all_its_cells_after_three_presses() {
     for size in SIZES {
         for language in [Language::English, Language::Japanese] {
             let mut window = open(Files::nowhere(), size, 1.0);
@@ -93,8 +93,7 @@ fn own_drawing_is_in_the_hand_after_three_presses() {
             assert_eq!(screen(&window), Screen::Play);
             assert_eq!((bodies(&mut window), voxels(&mut window)), (1, drawn));
             frames(&mut window, 60);
-            let moved = game(&mut window).bout.round().progress().pieces;
-            assert_eq!(moved, 1);
+            assert_eq!(game(&mut window).bout.round().progress().pieces, 1);
             press(&mut window, Key::Escape);
             click(&mut window, words.to_paper);
             assert_eq!(screen(&window), Screen::Paper);
@@ -104,7 +103,7 @@ fn own_drawing_is_in_the_hand_after_three_presses() {
 }
 
 #[test]
-fn animal_with_legs_and_a_tail_bears_its_drop() {
+fn drawn_animal_stays_whole_after_its_drop() {
     let mut window = open(Files::nowhere(), SIZES[0], 1.0);
     for stuff in Stuff::ALL {
         for is_solid in [false, true] {
@@ -137,7 +136,7 @@ fn animal_with_legs_and_a_tail_bears_its_drop() {
 }
 
 #[test]
-fn tools_of_the_paper_work_by_mouse() {
+fn each_tool_changes_the_paper_by_mouse() {
     let mut window = open(Files::nowhere(), SIZES[0], 1.0);
     game(&mut window).open_paper();
     frames(&mut window, 2);
@@ -555,7 +554,7 @@ fn finger_draws_and_builds_at_the_size_of_a_phone() {
 }
 
 #[test]
-fn making_looks_as_in_the_pictures() {
+fn screens_of_making_match_pictures() {
     let mut results = egui_kittest::SnapshotResults::new();
     for (size, tag) in SIZES.into_iter().zip(["", "upright_"]) {
         let mut window = open(Files::nowhere(), size, 1.0);
@@ -597,4 +596,80 @@ fn making_looks_as_in_the_pictures() {
         picture(&mut window, one, "finish");
         results.extend(window.take_snapshot_results());
     }
+}
+
+#[test]
+fn copy_of_a_level_of_others_tells_its_origin() {
+    let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+    let game = game(&mut window);
+    let mut scene = Level::open("sandbox").unwrap().scene().clone();
+    let rules = scene.game.as_mut().unwrap();
+    (rules.name.en, rules.made_by) = ("Theirs".into(), Some("Mika".into()));
+    let level = Level::from_scene("my-level-1", scene).unwrap();
+    let sent = level.link().unwrap();
+    game.open_link(&format!("https://example.org/#{sent}"));
+    game.play_offered();
+    let theirs = game.levels.last().unwrap().clone();
+    assert!(!theirs.id.starts_with("my-level-"), "{}", theirs.id);
+    game.duplicate(game.levels.len() - 1);
+    let copy = game.levels.last().unwrap();
+    assert_eq!(copy.game().name.en, "Theirs 2");
+    assert_eq!(copy.game().changed_from.as_deref(), Some("Theirs (Mika)"));
+    assert_eq!(copy.game().made_by.as_deref(), Some("Mika"));
+}
+
+#[test]
+fn escape_leaves_the_editor_after_presses_by_pointer() {
+    let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+    game(&mut window).edit_blank(2);
+    frames(&mut window, 2);
+    let at = place_of_item(&mut window, Item::Body(0));
+    window.hover_at(at);
+    window.event(pointer_button(at, PointerButton::Primary, true));
+    frames(&mut window, 1);
+    window.event(pointer_button(at, PointerButton::Primary, false));
+    frames(&mut window, 2);
+    assert_eq!(game(&mut window).maker.editor.selection, [Item::Body(0)]);
+    click(&mut window, "Larger");
+    for _ in 0..3 {
+        press(&mut window, Key::Escape);
+    }
+    assert_ne!(screen(&window), Screen::Editor);
+}
+
+#[test]
+fn level_without_a_name_is_not_kept() {
+    let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+    let game = game(&mut window);
+    game.edit_blank(2);
+    game.name_draft("");
+    let count = game.levels.len();
+    assert!(!game.keep_draft());
+    assert_eq!(game.levels.len(), count);
+    let words = game.making();
+    assert!(
+        game.notices
+            .iter()
+            .any(|notice| notice.text == words.needs_name)
+    );
+}
+
+#[test]
+fn colours_of_a_picture_stay_after_another_one_and_undo() {
+    let mut window = open(Files::nowhere(), SIZES[0], 1.0);
+    let game = game(&mut window);
+    game.open_paper();
+    let bytes = std::fs::read(level_file("cat.png")).unwrap();
+    game.draw_picture("cat.png".into(), bytes.clone());
+    let colours = |game: &Game| {
+        let cells = game.maker.paper.cells().iter();
+        cells
+            .map(|&cell| game.maker.palette.colour(cell))
+            .collect::<Vec<_>>()
+    };
+    let before = colours(game);
+    game.redraw_picture(24);
+    assert_ne!(colours(game), before);
+    assert!(game.maker.paper.undo());
+    assert_eq!(colours(game), before);
 }

@@ -2,14 +2,16 @@
 
 use super::bounds::grid_size;
 use super::clip::add_basket;
+use super::layers::{Stops, set_stops};
 use super::movement::room_of;
 use super::{Item, MAX_COORDINATE, bounds, first_leader, flat, rounded};
+use crate::palette::{crayon, number_in};
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{
     AxisText, BallText, BasketText, BodyText, BoxText, CapsuleText, FieldText, Form, HandText,
-    JointAnchorText, JointKindText, JointText, KnifeText, LayersText, MAX_BODIES, MAX_MATERIALS,
-    MAX_RIGID, MotionTypeText, ObstacleText, RepeatText, RigidBodyText, SwitchText,
+    JointAnchorText, JointKindText, JointText, KnifeText, MAX_BODIES, MAX_MATERIALS, MAX_RIGID,
+    MotionTypeText, ObstacleText, RepeatText, RigidBodyText, SwitchText,
 };
 use tamaire_play::PLAYERS;
 use tamaire_play::playground::Stuff;
@@ -32,7 +34,7 @@ const TIE_RADIUS: f32 = 0.06;
 /// Something that can be added to a level.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Soft body of a shape and a material. An empty shape becomes a box.
+    /// Soft body of a shape and a crayon. An empty shape becomes a box.
     Body(Form, Stuff),
     /// Fixed box.
     Wall,
@@ -125,8 +127,8 @@ pub fn add(scene: &mut Scene, kind: Kind, at: Vec3) -> Vec<Item> {
             let way = Vec3::X * 0.3;
             add_obstacle(scene, capsule(at - way, at + way, 0.05))
         }
-        Kind::Glass => add_layered(scene, at, 2),
-        Kind::Curtain => add_layered(scene, at, 1),
+        Kind::Glass => add_layered(scene, at, Stops::Hands),
+        Kind::Curtain => add_layered(scene, at, Stops::Bodies),
         Kind::Basket => add_basket_with_bars(scene, at),
         Kind::Plank => add_plank(scene, at, [0.3, 0.03, 0.12]),
         Kind::SeeSaw => add_see_saw(scene, at),
@@ -232,7 +234,7 @@ fn add_obstacle(scene: &mut Scene, text: ObstacleText) -> Vec<Item> {
 
 fn add_body(scene: &mut Scene, form: Form, stuff: Stuff, at: Vec3) -> Vec<Item> {
     let form = if form == Form::Empty { Form::Box } else { form };
-    let number = material_number(scene, stuff);
+    let number = number_in(&mut scene.material, &crayon(stuff), MAX_MATERIALS);
     let mut text = BodyText {
         shape: Some(form),
         n: Some(BODY_VOXELS[usize::from(scene.dim == 3)]),
@@ -246,36 +248,12 @@ fn add_body(scene: &mut Scene, form: Form, stuff: Stuff, at: Vec3) -> Vec<Item> 
     vec![Item::Body(scene.body.len() - 1)]
 }
 
-/// Returns the number of a material in a scene. Adds it if it is missing, unless the list is full.
-fn material_number(scene: &mut Scene, stuff: Stuff) -> u8 {
-    let material = stuff.material();
-    let known = scene.material.iter().position(|known| *known == material);
-    let index = match known {
-        Some(index) => index,
-        None if scene.material.len() < MAX_MATERIALS => {
-            scene.material.push(material);
-            scene.material.len() - 1
-        }
-        None => 0,
-    };
-    u8::try_from(index + 1).unwrap_or(1)
-}
-
-/// Adds a box that collides with one layer only, 1 for bodies and 2 for hands. Puts all hands into the second layer.
-fn add_layered(scene: &mut Scene, at: Vec3, filters: u32) -> Vec<Item> {
-    for hand in &mut scene.hand {
-        let layers = hand.layers.get_or_insert(LayersText {
-            memberships: 1,
-            filters: u32::MAX,
-        });
-        layers.memberships = layers.memberships & !1 | 2;
-    }
-    let layers = Some(LayersText {
-        memberships: 1,
-        filters,
-    });
+/// Adds a box that stops only hands or only bodies.
+fn add_layered(scene: &mut Scene, at: Vec3, stops: Stops) -> Vec<Item> {
     let text = boxed(scene.dim, at, [0.05, 0.3, 0.3]);
-    add_obstacle(scene, ObstacleText { layers, ..text })
+    let items = add_obstacle(scene, text);
+    set_stops(scene, scene.obstacle.len() - 1, stops);
+    items
 }
 
 /// Adds a basket that is open to the left; in 3D its bars lie at two thirds of its height, as in the level of 2004.

@@ -210,15 +210,45 @@ pub(super) fn grid_size(scene: &Scene, text: &BodyText) -> GridSize {
 /// Box around a body that was built, and the edge length of its voxels.
 type Built = ([Vec3; 2], f32);
 
-thread_local! {
-    /// Bodies that were built, with their dimension. `None` for those that cannot be built.
-    static KNOWN: RefCell<Vec<(u8, BodyText, Option<Built>)>> = const { RefCell::new(Vec::new()) };
+/// Body that was built lately.
+struct Known {
+    dim: u8,
+    /// Number of materials of the scene for which the body was built.
+    materials: usize,
+    /// Text of the body with the fields that decide its size, see [`sizing`].
+    text: BodyText,
+    /// `None` if the body cannot be built with the materials.
+    built: Option<Built>,
 }
 
-/// Returns the box around the nodes of a body with a state, or the box of the grid of a body from a file, for a width of
-/// 1 m and the origin as its low corner. Builds the body if it was not built lately.
-fn known(scene: &Scene, text: &BodyText) -> Option<Built> {
-    let key = match text.state {
+impl Known {
+    /// Returns whether a body of a scene has the same size. A body that could not be built may become valid with other
+    /// materials.
+    fn is(&self, scene: &Scene, text: &BodyText) -> bool {
+        let known = &self.text;
+        self.dim == scene.dim
+            && (self.built.is_some() || self.materials == scene.material.len())
+            && match text.state {
+                Some(_) => known == text,
+                None => {
+                    known.state.is_none()
+                        && (known.n, known.material) == (text.n, text.material)
+                        && known.file == text.file
+                        && known.colours == text.colours
+                        && known.content == text.content
+                }
+            }
+    }
+}
+
+thread_local! {
+    static KNOWN: RefCell<Vec<Known>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Returns the text of a body without the fields that do not decide its size: for a body from a file, the result has a width
+/// of 1 m and the origin as its low corner. [`Known::is`] compares the fields that are left.
+fn sizing(text: &BodyText) -> BodyText {
+    match text.state {
         Some(_) => text.clone(),
         None => BodyText {
             file: text.file.clone(),
@@ -228,26 +258,36 @@ fn known(scene: &Scene, text: &BodyText) -> Option<Built> {
             colours: text.colours.clone(),
             ..BodyText::default()
         },
-    };
-    let find = |known: &RefCell<Vec<(u8, BodyText, Option<Built>)>>| {
+    }
+}
+
+/// Returns the box around the nodes of a body with a state, or the box of the grid of a body from a file, for a width of
+/// 1 m and the origin as its low corner. Builds the body if it was not built lately. The text, which can have megabytes, is
+/// copied only then.
+fn known(scene: &Scene, text: &BodyText) -> Option<Built> {
+    let find = |known: &RefCell<Vec<Known>>| {
         let known = known.borrow();
-        let found = known
-            .iter()
-            .find(|(dim, body, _)| *dim == scene.dim && *body == key);
-        found.map(|(_, _, built)| *built)
+        let found = known.iter().find(|known| known.is(scene, text));
+        found.map(|known| known.built)
     };
     if let Some(built) = KNOWN.with(find) {
         return built;
     }
+    let text = sizing(text);
     let built = match scene.dim {
-        2 => built::<Dim2>(scene, &key),
-        _ => built::<Dim3>(scene, &key),
+        2 => built::<Dim2>(scene, &text),
+        _ => built::<Dim3>(scene, &text),
     };
     KNOWN.with_borrow_mut(|known| {
         if known.len() >= MAX_KNOWN {
             known.remove(0);
         }
-        known.push((scene.dim, key, built));
+        known.push(Known {
+            dim: scene.dim,
+            materials: scene.material.len(),
+            text,
+            built,
+        });
     });
     built
 }

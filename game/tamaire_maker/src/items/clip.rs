@@ -13,7 +13,8 @@ use fuwafuwa_scenes::scene::{
 use std::collections::{BTreeMap, BTreeSet};
 use tamaire_play::PLAYERS;
 
-/// Maximum number of baskets in a level.
+/// Maximum number of baskets in a level. The private constant `MAX_BASKETS` in `scene/game.rs` of `fuwafuwa_scenes` has the
+/// same value.
 pub(super) const MAX_BASKETS: usize = 8;
 
 /// Copied items. Their numbers are those of the scene from which they were copied.
@@ -43,18 +44,6 @@ impl Clip {
     /// Returns the number of dimensions of the scene from which the items were copied.
     pub fn dim(&self) -> u8 {
         self.dim
-    }
-
-    /// Returns whether nothing was copied.
-    pub fn is_empty(&self) -> bool {
-        let count = self.bodies.len()
-            + self.obstacles.len()
-            + self.hands.len()
-            + self.rigid_bodies.len()
-            + self.switches.len()
-            + self.fields.len()
-            + self.baskets.len();
-        count == 0
     }
 }
 
@@ -139,9 +128,9 @@ fn plain_basket(region: &BoxText) -> BasketText {
 
 /// Adds copied items to a scene, moved by a vector [m]. Returns the new items; none if the scene has another dimension.
 ///
-/// Materials travel along; those that the scene has already are used again. What has no place is left out: a third hand of
-/// a player, more entries than a list may have, and joints and knives on what was left out. A switch, a body or a hand that
-/// was not copied is replaced by the one with the same number, if there is one.
+/// The materials of bodies are added, except those that the scene has already. An item is not pasted if a level cannot have
+/// it: a third hand of a player, an entry of a list that is full, and a joint or a knife on an item that was not pasted. A
+/// switch, a body or a hand that was not copied is replaced by the one with the same number, if there is one.
 pub fn paste(scene: &mut Scene, clip: &Clip, by: Vec3) -> Vec<Item> {
     if clip.dim != scene.dim || !by.is_finite() {
         return Vec::new();

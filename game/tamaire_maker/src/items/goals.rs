@@ -5,7 +5,7 @@ use fuwafuwa_scenes::scene::{MAX_TOLD_BODIES, WishText};
 
 /// Returns whether a level with this scene may have a goal: it has a condition, its numbers are in range, and the bodies
 /// and joints that it is about are in the scene.
-pub fn is_possible(scene: &Scene, wish: &WishText) -> bool {
+pub(super) fn is_possible(scene: &Scene, wish: &WishText) -> bool {
     let is_share = |share: f32| (0.0..=1.0).contains(&share);
     let least = wish.pieces.unwrap_or(1).max(1);
     let bodies = scene.body.len().min(MAX_TOLD_BODIES);

@@ -204,7 +204,7 @@ fn length_of(text: &CapsuleText) -> f32 {
     Vec3::from(text.from).distance(Vec3::from(text.to))
 }
 
-/// Limits the length of a capsule that was longer than allowed neither before nor now.
+/// Shortens a capsule to the maximum length, or to its length `before` [m] if that was longer.
 fn shorten(text: &mut CapsuleText, before: f32) {
     let (length, most) = (length_of(text), before.max(SIZES[1]));
     if length > most {

@@ -26,7 +26,7 @@ const HAND_SHARE: f32 = 0.9;
 /// Motion of each item.
 type Moves = BTreeMap<Item, Moved>;
 
-/// Moves items. What is fixed to them moves along: anchors of joints, knives, pivots, and hands that follow a moved one.
+/// Moves items, and everything that is fixed to them: anchors of joints, knives, pivots, and hands that follow a moved one.
 /// A joint moves only its anchors that are fixed points. The first point of the hint moves with the first hand.
 ///
 /// The middle of each item stays within [`MAX_COORDINATE`], and all items move by the same vector. A body that is given by

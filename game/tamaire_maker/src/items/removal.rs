@@ -11,14 +11,14 @@ use std::collections::BTreeSet;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Removed {
     /// Items that were removed, by their former indices: the chosen ones, and those that depend on them.
-    pub removed: Vec<Item>,
+    pub(super) removed: Vec<Item>,
     /// Items that were kept, because a level requires them: the last body and the last hand that a player can move.
     pub refused: Vec<Item>,
-    /// Rules of the level that cannot hold any more, and were removed.
+    /// Rules of the level that cannot hold any more, and were removed or replaced.
     pub dropped: Vec<Dropped>,
 }
 
-/// Rule of a level that was removed, because it can no longer hold.
+/// Rule of a level that can no longer hold, because of a removal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dropped {
     /// A goal.
@@ -27,6 +27,9 @@ pub enum Dropped {
     Requirement(WishText),
     /// The stated routes of a level that has no basket any more.
     Routes(Vec<RouteText>),
+    /// The list of the bodies that count for the level (`None`), for a basket or for a switch, by its former index. All
+    /// bodies of the list were removed, so that all bodies of the level count from then on.
+    Counted(Option<Item>),
 }
 
 /// Removes items and everything that depends on them: joints and knives on them, and hands that follow them. Numbers that
@@ -37,13 +40,16 @@ pub fn remove(scene: &mut Scene, items: &[Item]) -> Removed {
     let refused = refuse(scene, &mut gone);
     let mut gone = with_followers(scene, gone);
     add_dependents(scene, &mut gone);
+    let emptied = emptied_lists(scene, &gone);
     let numbers = Numbers::without(scene, &gone);
     numbers.apply(scene);
     remove_entries(scene, &gone);
+    let mut dropped = drop_rules(scene);
+    dropped.extend(emptied);
     Removed {
-        dropped: drop_rules(scene),
         removed: gone.into_iter().collect(),
         refused,
+        dropped,
     }
 }
 
@@ -78,6 +84,26 @@ fn add_dependents(scene: &Scene, gone: &mut BTreeSet<Item>) {
             gone.insert(Item::Knife(index));
         }
     }
+}
+
+/// Returns the lists of bodies that count, of which a removal leaves none. An empty list stands for all bodies.
+fn emptied_lists(scene: &Scene, gone: &BTreeSet<Item>) -> Vec<Dropped> {
+    let is_gone = |number: &usize| {
+        let index = number.checked_sub(1);
+        index.is_some_and(|index| gone.contains(&Item::Body(index)))
+    };
+    let is_emptied = |list: &[usize]| !list.is_empty() && list.iter().all(is_gone);
+    let game = scene.game.as_ref();
+    let level = game.map(|game| (None, &game.bodies));
+    let baskets = game.into_iter().flat_map(|game| &game.baskets).enumerate();
+    let baskets = baskets.map(|(index, basket)| (Some(Item::Basket(index)), &basket.bodies));
+    let switches = scene.switch.iter().enumerate();
+    let switches = switches.map(|(index, switch)| (Some(Item::Switch(index)), &switch.bodies));
+    let lists = level.into_iter().chain(baskets).chain(switches);
+    lists
+        .filter(|(item, list)| item.is_none_or(|item| !gone.contains(&item)) && is_emptied(list))
+        .map(|(item, _)| Dropped::Counted(item))
+        .collect()
 }
 
 /// Numbers after a removal, by the index before it. `None` for what was removed.

@@ -1,10 +1,12 @@
 use super::*;
-use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Rotation, World};
-use fuwafuwa_scenes::scene::{BodyText, Form};
+use crate::draft::Draft;
+use crate::palette::crayon;
+use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Layers, Rotation, World};
+use fuwafuwa_scenes::scene::{BodyText, Form, WishText};
 use std::f32::consts::{FRAC_PI_2, PI};
-use tamaire_play::Level;
 use tamaire_play::level::built_in;
 use tamaire_play::playground::Stuff;
+use tamaire_play::{Joints, Level};
 
 /// Text of a built-in level, the scene that was read from it, and that with embedded files.
 pub(crate) fn start_of(id: &str) -> (&'static str, Scene, Scene) {
@@ -605,6 +607,41 @@ fn removal_refuses_the_last_body_and_hand_and_drops_impossible_goals() {
 }
 
 #[test]
+fn removal_reports_lists_of_counted_bodies_that_become_empty() {
+    let mut scene = Draft::blank(2).scene().clone();
+    for kind in [Kind::ALL[0], Kind::Basket, Kind::Basket, Kind::Button] {
+        add(&mut scene, kind, Vec3::ZERO);
+    }
+    let game = scene.game.as_mut().unwrap();
+    game.bodies = vec![2];
+    game.baskets[0].bodies = vec![1, 2];
+    game.baskets[1].bodies = vec![2];
+    scene.switch[0].bodies = vec![2];
+    let others = remove(&mut scene.clone(), &[Item::Body(0)]);
+    assert_eq!(others.dropped, []);
+    let without_switch = remove(&mut scene.clone(), &[Item::Body(1), Item::Switch(0)]);
+    let [level, basket, switch] =
+        [None, Some(Item::Basket(1)), Some(Item::Switch(0))].map(Dropped::Counted);
+    assert_eq!(without_switch.dropped, [level.clone(), basket.clone()]);
+    let all = remove(&mut scene, &[Item::Body(1)]);
+    assert_eq!(all.dropped, [level, basket, switch]);
+    assert!(scene.switch[0].bodies.is_empty());
+}
+
+#[test]
+fn goals_that_cannot_hold_are_not_possible() {
+    let scene = start_of("classic").2;
+    let of = |change: fn(&mut WishText)| {
+        let mut wish = WishText::default();
+        change(&mut wish);
+        is_possible(&scene, &wish)
+    };
+    assert!(of(|wish| wish.pieces = Some(2)) && of(|wish| wish.whole = vec![1]));
+    assert!(!of(|_| {}) && !of(|wish| wish.joints = Some(Joints::Whole)));
+    assert!(!of(|wish| wish.kept = Some(2.0)) && !of(|wish| wish.whole = vec![1, 1]));
+}
+
+#[test]
 fn removal_of_a_switch_brings_its_obstacles_to_rest() {
     let mut scene = start_of("dumbwaiter").2;
     let lift = scene
@@ -765,6 +802,71 @@ fn everything_can_be_added_to_every_level() {
             checked.err()
         );
     }
+}
+
+#[test]
+fn new_body_has_a_crayon_that_a_new_level_has() {
+    for dim in [2, 3] {
+        for stuff in Stuff::ALL {
+            let mut scene = Draft::blank(dim).scene().clone();
+            let materials = scene.material.clone();
+            add(&mut scene, Kind::Body(Form::Heart, stuff), Vec3::ZERO);
+            assert_eq!(scene.material, materials);
+            let number = scene.body.last().unwrap().material.unwrap_or(1);
+            assert_eq!(materials[usize::from(number) - 1], crayon(stuff));
+        }
+    }
+}
+
+#[test]
+fn obstacle_stops_what_it_was_set_to() {
+    for dim in [2, 3] {
+        let mut scene = Draft::blank(dim).scene().clone();
+        add(&mut scene, Kind::Fork, Vec3::ZERO);
+        add(&mut scene, Kind::Wall, Vec3::ZERO);
+        let wall = scene.obstacle.len() - 1;
+        let stopped = |scene: &Scene, obstacle: usize| {
+            let text = scene.obstacle[obstacle].layers;
+            let own: Layers = text.map(Into::into).unwrap_or_default();
+            let mut hands = scene.hand.iter();
+            let hands = hands.all(|hand| own.meet(hand.layers.map(Into::into).unwrap_or_default()));
+            [hands, own.meet(Layers::default())]
+        };
+        for (stops, expected) in [
+            (Stops::All, [true; 2]),
+            (Stops::Hands, [true, false]),
+            (Stops::Bodies, [false, true]),
+            (Stops::All, [true; 2]),
+        ] {
+            set_stops(&mut scene, wall, stops);
+            assert_eq!(stops_of(&scene, wall), Some(stops));
+            assert_eq!(stopped(&scene, wall), expected, "{stops:?}");
+            assert_eq!(stopped(&scene, 0), [true; 2], "the floor stops all");
+            Level::from_scene("new", scene.clone()).unwrap();
+        }
+        assert_eq!(scene.obstacle[wall].layers, None);
+        let before = scene.clone();
+        set_stops(&mut scene, 99, Stops::Hands);
+        assert!(scene == before && stops_of(&scene, 99).is_none());
+        for (kind, stops) in [(Kind::Glass, Stops::Hands), (Kind::Curtain, Stops::Bodies)] {
+            add(&mut scene, kind, Vec3::ZERO);
+            assert_eq!(stops_of(&scene, scene.obstacle.len() - 1), Some(stops));
+        }
+        scene.obstacle[wall].layers = scene.hand[0].layers;
+        assert_eq!(stops_of(&scene, wall), None);
+    }
+}
+
+#[test]
+fn body_with_a_missing_material_has_its_size_once_the_material_is_there() {
+    let mut scene = start_of("pudding").2;
+    let expected = bounds(&scene, Item::Body(0)).unwrap();
+    let materials = std::mem::take(&mut scene.material);
+    // Under another name, the body was not built yet.
+    scene.body[0].file = Some("other".into());
+    assert_ne!(bounds(&scene, Item::Body(0)), Some(expected));
+    scene.material = materials;
+    assert_eq!(bounds(&scene, Item::Body(0)), Some(expected));
 }
 
 #[test]

@@ -42,7 +42,7 @@ export async function first(browser, site) {
     const took = performance.now() - start;
     const bytes = site.sent.reduce((sum, { bytes }) => sum + bytes, 0);
     console.log(`${what}: ${(bytes / 1e6).toFixed(2)} MB over the wire, ${(took / 1000).toFixed(1)} s until it plays (${visit})`);
-    // 2.80 MB with the paper, the editor, packs and QR codes; 2.48 MB before.
+    // At most 2.9 MB until the game plays, to keep loading short on slow connections; docs/tuning.md records sizes.
     assert(bytes <= 2.9e6, `${bytes} bytes until the game plays`);
     await seconds(5);
     await page.close();

@@ -33,11 +33,11 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, room: Rect) {
         look_around(game, ui, room);
     }
     floor(game, ui, room, &view);
-    let scene = game.maker.draft.scene().clone();
-    let mut places: Vec<(Item, Rect)> = items::items(&scene)
+    let scene = game.maker.draft.scene();
+    let mut places: Vec<(Item, Rect)> = items::items(scene)
         .into_iter()
         .filter_map(|item| {
-            let [low, high] = items::bounds(&scene, item)?;
+            let [low, high] = items::bounds(scene, item)?;
             let place = on_screen(&view, low, high).intersect(room.expand(LEAST));
             let is_seen = place.width() >= 0.0 && place.height() >= 0.0;
             is_seen.then(|| (item, place.expand2(lacking(place.size()))))

@@ -69,7 +69,7 @@ fn names(game: &mut Game, ui: &mut Ui, theme: &Theme) {
 }
 
 /// Shows what bots found out about the level, and whether its maker has won it.
-fn checks(game: &Game, ui: &mut Ui, theme: &Theme) {
+fn checks(game: &mut Game, ui: &mut Ui, theme: &Theme) {
     let (said, words) = (game.words(), game.making());
     let line = |ui: &mut Ui, sign: &str, text: &str, ink: Color32| {
         ui.label(
@@ -78,7 +78,8 @@ fn checks(game: &Game, ui: &mut Ui, theme: &Theme) {
                 .color(ink),
         );
     };
-    if let Some(problem) = game.maker.problem(game.words(), words) {
+    let won = game.maker.summary().won;
+    if let Some(problem) = game.draft_problem() {
         line(ui, "×", &problem, theme.accent);
         return;
     }
@@ -101,7 +102,7 @@ fn checks(game: &Game, ui: &mut Ui, theme: &Theme) {
             let (sign, text, ink) = told(finding, name);
             line(ui, sign, &text, ink);
         }
-        match game.maker.won_by_maker() {
+        match won {
             Some(seconds) => {
                 let time = (said.seconds)(seconds);
                 line(

@@ -32,7 +32,9 @@ pub(super) fn room(game: &Game, ui: &Ui) -> Rect {
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let (screen, room) = (ui.max_rect(), room(game, ui));
-    let had_keys = game.maker.editor.moves_by_keys;
+    // While keys hold a thing, Escape lets it go.
+    let has_focus = ui.memory(|memory| memory.focused().is_some());
+    let had_keys = game.maker.editor.moves_by_keys && has_focus;
     keys(game, ui);
     canvas::show(game, ui, room);
     let leaves = top(game, ui, screen.shrink(EDGE).with_max_y(room.top() - EDGE));
@@ -118,6 +120,10 @@ fn top(game: &mut Game, ui: &mut Ui, rect: Rect) -> bool {
 
 /// Reads the keys of drawing programs.
 fn keys(game: &mut Game, ui: &Ui) {
+    if game.maker.editor.drag.is_some() {
+        // Numbers of things may be others at the end of the drag.
+        return;
+    }
     let pressed = |key, modifiers| ui.input_mut(|input| input.consume_key(modifiers, key));
     let command = Modifiers::COMMAND;
     let shifted = command | Modifiers::SHIFT;
@@ -146,7 +152,7 @@ fn keys(game: &mut Game, ui: &Ui) {
     });
     if copies || cuts {
         game.copy_selection();
-        // Without a text in the clipboard, pressing the keys that paste is not told to the game.
+        // With an empty clipboard, the system does not tell the game that the keys for pasting are pressed.
         ui.ctx().copy_text(game.draft_name().to_string());
     }
     if cuts {

@@ -9,10 +9,10 @@ use app_shell::widgets::{ButtonStyle, button};
 use egui::{FontId, Key, Rect, TextEdit, Ui, UiBuilder, WidgetInfo, vec2};
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{
-    BasketText, BodyText, FieldText, HandText, JointKindText, JointText, LayersText,
-    MotionTypeText, ObstacleText, RepeatText, RigidBodyText, SwitchText, SwitchedBy,
+    BasketText, BodyText, FieldText, HandText, JointKindText, JointText, MotionTypeText,
+    ObstacleText, RepeatText, RigidBodyText, SwitchText, SwitchedBy,
 };
-use tamaire_maker::items::Item;
+use tamaire_maker::items::{Item, Stops, set_stops, stops_of};
 use tamaire_maker::palette::{crayon, number_in};
 use tamaire_play::playground::Stuff;
 use tamaire_play::{Route, Wish};
@@ -235,6 +235,7 @@ fn of_item(fields: &mut Fields, scene: &mut Scene, item: Item) {
         Item::Body(index) => body(fields, scene, index),
         Item::Obstacle(index) => {
             let switches = scene.switch.len();
+            stops(fields, scene, index);
             if let Some(text) = scene.obstacle.get_mut(index) {
                 obstacle(fields, text, switches);
             }
@@ -287,9 +288,9 @@ fn body(fields: &mut Fields, scene: &mut Scene, index: usize) {
         return;
     };
     if text.shape.is_some() {
-        let known = text
-            .material
-            .and_then(|number| scene.material.get(usize::from(number).checked_sub(1)?));
+        let number = usize::from(text.material.unwrap_or(1));
+        let known = number.checked_sub(1);
+        let known = known.and_then(|place| scene.material.get(place));
         let mut stuff = Stuff::ALL
             .into_iter()
             .find(|&stuff| known == Some(&crayon(stuff)));
@@ -340,42 +341,25 @@ fn body(fields: &mut Fields, scene: &mut Scene, index: usize) {
     }
 }
 
-/// What an obstacle stops.
-#[derive(Copy, Clone, PartialEq)]
-enum Stops {
-    All,
-    Hands,
-    Bodies,
-    Other,
+/// Shows what an obstacle stops.
+fn stops(fields: &mut Fields, scene: &mut Scene, index: usize) {
+    let words = fields.words;
+    let mut stops = stops_of(scene, index);
+    let [all, hands, bodies] = words.stops;
+    let options = [
+        (Some(Stops::All), all),
+        (Some(Stops::Hands), hands),
+        (Some(Stops::Bodies), bodies),
+    ];
+    if fields.choose(words.wall_kind, &mut stops, &options)
+        && let Some(stops) = stops
+    {
+        set_stops(scene, index, stops);
+    }
 }
 
 fn obstacle(fields: &mut Fields, text: &mut ObstacleText, switches: usize) {
     let words = fields.words;
-    let only = |filters| {
-        Some(LayersText {
-            memberships: 1,
-            filters,
-        })
-    };
-    let mut stops = match text.layers {
-        None => Stops::All,
-        layers if layers == only(2) => Stops::Hands,
-        layers if layers == only(1) => Stops::Bodies,
-        Some(_) => Stops::Other,
-    };
-    let [all, hands, bodies] = words.stops;
-    let options = [
-        (Stops::All, all),
-        (Stops::Hands, hands),
-        (Stops::Bodies, bodies),
-    ];
-    if fields.choose(words.wall_kind, &mut stops, &options) {
-        text.layers = match stops {
-            Stops::Hands => only(2),
-            Stops::Bodies => only(1),
-            Stops::All | Stops::Other => None,
-        };
-    }
     fields.slide(words.friction, &mut text.friction, [0.0, 1.0, 0.05], "");
     if text.half_space.is_some() {
         return;
@@ -433,9 +417,9 @@ fn path(fields: &mut Fields, text: &mut ObstacleText) {
     }
     if changed != end {
         text.path = match (moves, text.path.len()) {
-            (false, _) => Vec::new(),
+            (false, 0..=2) => Vec::new(),
             (true, 0..=2) => vec![[0.0; 4], changed],
-            (true, _) => {
+            (_, _) => {
                 let mut path = std::mem::take(&mut text.path);
                 let before = path[path.len() - 2][0];
                 changed[0] = changed[0].max(before);
@@ -778,8 +762,11 @@ fn goal(fields: &mut Fields, wishes: &mut Vec<Wish>, place: usize) {
         ),
         Goal::Little => {
             let mut torn = 100.0 * (1.0 - wish.kept.unwrap_or(0.9));
+            let before = torn;
             fields.slide(words.torn, &mut torn, [1.0, 60.0, 1.0], " %");
-            wish.kept = Some((100.0 - torn.round()) / 100.0);
+            if torn != before {
+                wish.kept = Some((100.0 - torn.round()) / 100.0);
+            }
         }
         _ => {}
     }

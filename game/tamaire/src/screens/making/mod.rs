@@ -132,7 +132,7 @@ fn top(game: &mut Game, ui: &mut Ui, rect: Rect) -> bool {
 
 /// Shows how fine a picture is drawn. Any stroke on the paper makes it a drawing like others.
 fn picture_slider(game: &mut Game, ui: &mut Ui, rect: Rect) {
-    let Some((name, bytes, across)) = game.maker.picture.clone() else {
+    let Some(across) = game.maker.picture.as_ref().map(|picture| picture.across) else {
         return;
     };
     let (theme, words) = (game.theme(), game.making());
@@ -146,17 +146,18 @@ fn picture_slider(game: &mut Game, ui: &mut Ui, rect: Rect) {
         }
     });
     if fine as usize != across {
-        game.draw_picture(name, bytes, fine as usize);
+        game.redraw_picture(fine as usize);
     }
 }
 
 /// Tells below the paper what may surprise: thin parts and separate pieces.
-fn told(game: &Game, ui: &Ui, rect: Rect) {
+fn told(game: &mut Game, ui: &Ui, rect: Rect) {
     let (theme, words) = (game.theme(), game.making());
     // In space, most bumps of a rounded body are thin, and break no sooner than the body.
-    let drawing = game.maker.drawing();
-    let pieces = drawing.pieces().count;
-    let (text, ink) = if drawing.is_paper() && drawing.thin_cells().contains(&true) {
+    let is_paper = !game.maker.shows_block;
+    let flaws = game.maker.flaws();
+    let (pieces, is_thin) = (flaws.pieces.count, flaws.thin.contains(&true));
+    let (text, ink) = if is_paper && is_thin {
         (words.too_thin.to_string(), theme.accent)
     } else if pieces > 1 {
         ((words.pieces)(pieces), theme.ink)

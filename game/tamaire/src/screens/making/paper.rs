@@ -3,7 +3,7 @@
 use super::super::widgets::{focus_first, words};
 use super::picture::Picture;
 use super::{pen, tools};
-use crate::game::{DrawingTool, Game};
+use crate::game::{DrawingTool, Flaws, Game};
 use app_shell::widgets::{focus_ring, is_on};
 use egui::{
     Color32, Id, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
@@ -39,7 +39,9 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, rect: Rect) {
         game.notify(game.making().not_enclosed.to_string());
     }
     game.maker.is_sheet_on = is_on(ui, &sheet);
+    let flaws = game.maker.flaws().clone();
     draw(game, ui, rect);
+    warn(game, ui, rect, &flaws);
     pen::draw_cursor(game, ui, rect);
     if let Some(at) = ui.input(|input| input.pointer.hover_pos())
         && sheet.hovered()
@@ -95,11 +97,10 @@ fn draw(game: &Game, ui: &Ui, rect: Rect) {
     ui.data_mut(|data| data.insert_temp(id, picture));
     let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
     painter.image(texture.id(), rect, whole, Color32::WHITE);
-    warn(game, ui, rect);
 }
 
 /// Marks thin parts, which will break, and numbers separate pieces.
-fn warn(game: &Game, ui: &Ui, rect: Rect) {
+fn warn(game: &Game, ui: &Ui, rect: Rect, flaws: &Flaws) {
     let (theme, painter) = (game.theme(), ui.painter());
     let paper = &game.maker.paper;
     let [width, _, _] = paper.size();
@@ -108,12 +109,12 @@ fn warn(game: &Game, ui: &Ui, rect: Rect) {
         false => 0.5 + 0.3 * (4.0 * game.time).sin() as f32,
     };
     let mark = theme.accent.gamma_multiply(pulse);
-    let thin = paper.thin_cells();
+    let thin = &flaws.thin;
     for at in (0..thin.len()).filter(|&at| thin[at]) {
         let cell = cell_rect(paper, rect, [at % width, at / width]);
         painter.rect_filled(cell, 1.0, mark);
     }
-    let pieces = paper.pieces();
+    let pieces = &flaws.pieces;
     if !(2..=NUMBERED).contains(&pieces.count) {
         return;
     }

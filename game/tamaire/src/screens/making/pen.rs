@@ -13,13 +13,13 @@ const SPEED: f32 = 0.6;
 const DEAD: [f32; 2] = [0.15, 0.95];
 /// Time in which the cursor sweeps across the sheet for a player with one switch, in scanning steps.
 const SWEEP: f32 = 5.0;
-/// Least and usual width of a stroke drawn by a pen with pressure; the hardest pressure adds to the least one.
+/// Factor on the width of a stroke of a pen without pressure, and what full pressure adds to it.
 const PRESSURE: [f32; 2] = [0.5, 1.0];
 
 /// Movement of the pen in this frame.
 #[derive(Default)]
 pub(super) struct Moves {
-    /// Points through which the pen is drawn, each with its pressure, where 1 is usual.
+    /// Points through which the pen is drawn, each with the factor on the width of the stroke that its pressure gives.
     pub(super) points: Vec<(Pos2, f32)>,
     /// Whether the pen is up after the last point.
     pub(super) is_up: bool,
@@ -30,6 +30,21 @@ pub(super) fn moves(game: &mut Game, ui: &Ui, rect: Rect, sheet: &Response) -> M
     if sheet.is_pointer_button_down_on() {
         game.maker.cursor = None;
         return of_pointer(ui, sheet);
+    }
+    if let Some(at) = sheet.interact_pointer_pos()
+        && (sheet.clicked() || sheet.drag_stopped())
+    {
+        // The last movement, or a whole tap, happened within this frame.
+        let mut moves = of_pointer(ui, sheet);
+        if moves.points.is_empty() && sheet.clicked() && !game.maker.is_drawing() {
+            moves.points.push((at, 1.0));
+        }
+        moves.is_up = true;
+        return moves;
+    }
+    if !sheet.has_focus() {
+        // The cursor belongs to the focus.
+        game.maker.cursor = None;
     }
     if sheet.has_focus()
         && let Some(moves) = by_keys(game, ui, rect, sheet)
@@ -98,6 +113,13 @@ fn by_keys(game: &mut Game, ui: &Ui, rect: Rect, sheet: &Response) -> Option<Mov
     ui.memory_mut(|memory| memory.set_focus_lock_filter(sheet.id, filter));
     ui.ctx().request_repaint();
     let seconds = ui.input(|input| input.stable_dt.min(0.1));
+    if ui.input(|input| input.key_pressed(Key::Escape)) {
+        game.maker.cursor = None;
+        return Some(Moves {
+            points: Vec::new(),
+            is_up: true,
+        });
+    }
     let mut moves = Moves::default();
     let place = |at: Vec2| rect.min + at * rect.size();
     if let (Some(axis), Some(step)) = (cursor.sweep, game.settings.scanning.step()) {
@@ -133,9 +155,7 @@ fn by_keys(game: &mut Game, ui: &Ui, rect: Rect, sheet: &Response) -> Option<Mov
     }
     cursor.is_down ^= toggles;
     moves.is_up = !cursor.is_down;
-    let leaves = ui.input(|input| input.key_pressed(Key::Escape));
-    moves.is_up |= leaves;
-    game.maker.cursor = (!leaves).then_some(cursor);
+    game.maker.cursor = Some(cursor);
     Some(moves)
 }
 

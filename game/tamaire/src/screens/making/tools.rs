@@ -123,7 +123,10 @@ impl Tool {
                 let is_on = maker.drawing().closes();
                 maker.drawing_mut().set_closes(!is_on);
             }
-            Self::Clear => maker.drawing_mut().clear(),
+            Self::Clear => {
+                maker.picture = None;
+                maker.drawing_mut().clear();
+            }
             Self::Puff => maker.make_solid(Drawing::puffed),
             Self::Lathe => maker.make_solid(Drawing::lathed),
             Self::Slab => maker.make_solid(|paper| paper.slab(SLAB)),
@@ -378,6 +381,7 @@ pub(super) fn history(game: &mut Game, ui: &mut Ui, rect: Rect) {
         if response.clicked() {
             game.blip(Menu::Confirm);
             game.maker.lift_pen();
+            game.maker.picture = None;
             let drawing = game.maker.drawing_mut();
             if way < 0.0 {
                 drawing.undo();
