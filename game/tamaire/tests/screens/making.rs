@@ -585,7 +585,9 @@ fn screens_of_making_match_pictures() {
         start(&mut window, "lever");
         game(&mut window).edit_current();
         frames(&mut window, 3);
-        game(&mut window).select(Item::Body(0));
+        if tag.is_empty() {
+            game(&mut window).select(Item::Body(0));
+        }
         picture(&mut window, one, "editor");
         game(&mut window).select_nothing();
         game(&mut window).go(Screen::Properties);

@@ -4,6 +4,7 @@ mod canvas;
 mod finish;
 mod properties;
 mod shelf;
+mod signs;
 
 pub(super) use finish::show as finish;
 pub(super) use properties::{beside_properties, show as properties};

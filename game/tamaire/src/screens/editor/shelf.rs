@@ -2,10 +2,13 @@
 
 use super::super::making::round_button;
 use super::super::{hud, icons};
-use super::{EDGE, GAP};
+use super::{EDGE, GAP, signs};
 use crate::game::{EditorPart, Game, Screen};
-use app_shell::widgets::{ButtonStyle, button};
-use egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, pos2, vec2};
+use app_shell::Theme;
+use app_shell::widgets::{ButtonStyle, button, fitted, plain_button};
+use egui::{
+    Painter, Pos2, Rect, Response, Role, ScrollArea, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
+};
 use fuwafuwa::Vec3;
 use tamaire_maker::items::{Item, Kind};
 use tamaire_sound::Menu;
@@ -13,7 +16,7 @@ use tamaire_sound::Menu;
 /// Height of a button with text [points].
 const HIGH: f32 = 44.0;
 /// Width of a button with text [points].
-const WIDE: f32 = 98.0;
+const WIDE: f32 = 108.0;
 /// What can be done with the selection.
 #[derive(Copy, Clone, PartialEq)]
 enum Deed {
@@ -116,7 +119,7 @@ pub(super) fn height(screen: Rect, scale: f32) -> f32 {
     let rows = if screen.width() < screen.height() {
         3.0
     } else {
-        1.0
+        2.0
     };
     rows * (scale * HIGH + GAP) + scale * HIGH + 2.0 * EDGE
 }
@@ -231,7 +234,10 @@ fn things(game: &mut Game, ui: &mut Ui, rect: Rect) {
     let names: Vec<(Kind, &str)> = { Kind::ALL.into_iter() }
         .map(|kind| (kind, (game.making().kind_name)(kind)))
         .collect();
-    let chosen = rows(game, ui, rect, "things", &names);
+    let sign = |painter: &Painter, at: Pos2, scale: f32, kind: Kind| {
+        signs::draw(painter, &game.theme(), at, scale, kind);
+    };
+    let chosen = rows(game, ui, rect, "things", &names, Some(&sign));
     if let Some(kind) = chosen {
         game.blip(Menu::Confirm);
         game.add_thing(kind);
@@ -245,10 +251,13 @@ fn deeds(game: &mut Game, ui: &mut Ui, rect: Rect) {
         .into_iter()
         .map(|deed| (deed, deed.name(game)))
         .collect();
-    if let Some(deed) = rows(game, ui, rect, "deeds", &names) {
+    if let Some(deed) = rows(game, ui, rect, "deeds", &names, None) {
         deed.perform(game);
     }
 }
+
+/// Function that draws the sign of an option at a position in a scale.
+type Sign<'a, T> = &'a dyn Fn(&Painter, Pos2, f32, T);
 
 /// Shows buttons in rows that scroll sideways. Returns the chosen one.
 fn rows<T: Copy>(
@@ -257,6 +266,7 @@ fn rows<T: Copy>(
     rect: Rect,
     id: &str,
     options: &[(T, &str)],
+    sign: Option<Sign<T>>,
 ) -> Option<T> {
     let theme = game.theme();
     let scale = hud::scale(game, ui);
@@ -276,7 +286,13 @@ fn rows<T: Copy>(
                 for row in 0..count.min(options.len()) {
                     ui.horizontal(|ui| {
                         for &(option, text) in options.iter().skip(row).step_by(count) {
-                            if button(ui, &theme, text, size, ButtonStyle::Other).clicked() {
+                            let response = match sign {
+                                None => button(ui, &theme, text, size, ButtonStyle::Other),
+                                Some(sign) => signed(ui, &theme, (text, size), |painter, at| {
+                                    sign(painter, at, scale, option);
+                                }),
+                            };
+                            if response.clicked() {
                                 chosen = Some(option);
                             }
                         }
@@ -286,4 +302,23 @@ fn rows<T: Copy>(
         });
     });
     chosen
+}
+
+/// Shows a button with a sign on the left and its text beside it.
+fn signed(
+    ui: &mut Ui,
+    theme: &Theme,
+    (text, size): (&str, Vec2),
+    draw: impl FnOnce(&Painter, Pos2),
+) -> Response {
+    let response = plain_button(ui, theme, "", size, ButtonStyle::Other);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text));
+    let (rect, side) = (response.rect, size.y);
+    let painter = ui.painter();
+    draw(painter, rect.left_center() + vec2(0.55 * side, 0.0));
+    let room = rect.width() - 1.25 * side;
+    let galley = fitted(painter, text, 0.42 * side, room, theme.ink);
+    let at = rect.left_center() + vec2(side, -0.5 * galley.size().y);
+    painter.galley(at, galley, theme.ink);
+    response
 }
