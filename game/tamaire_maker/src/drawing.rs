@@ -154,6 +154,14 @@ impl Drawing {
         })
     }
 
+    /// Returns a copy without steps to undo.
+    pub fn without_history(&self) -> Self {
+        let mut copy = Self::empty(self.size());
+        copy.cells.clone_from(&self.cells);
+        copy.history = History::new(Runs::of(&copy.cells));
+        copy
+    }
+
     /// Returns the number of cells on each axis; 1 on the third axis of paper.
     pub fn size(&self) -> [usize; 3] {
         self.lattice.size

@@ -63,7 +63,12 @@ impl Game {
     /// [`Game::bring_back`] undoes it.
     pub fn take_out(&mut self, index: usize) {
         let level = self.levels.remove(index);
-        let text = self.text_of(&level);
+        // A text that is still being written may be older than the level.
+        let is_current = |text: &String| {
+            Level::read_kept(&level.id, text.as_bytes())
+                .is_ok_and(|read| read.scene() == level.scene())
+        };
+        let text = self.text_of(&level).filter(is_current);
         let text = text.or_else(|| level.text_to_keep().ok());
         self.removed.extend(text.map(|text| (level.clone(), text)));
         self.files.remove_level(&level.id);

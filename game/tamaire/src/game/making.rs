@@ -309,7 +309,7 @@ impl Maker {
         if self.is_alone() && self.room.scene().dim != dim {
             self.room = Draft::blank(dim);
         }
-        let (drawing, palette) = (self.drawing().clone(), self.palette.clone());
+        let (drawing, palette) = (self.drawing().without_history(), self.palette.clone());
         let (draft, body) = match self.target {
             // The drawing takes the place of the body of the empty room.
             Target::Room => (&mut self.room, Some(0)),

@@ -311,7 +311,7 @@ fn body(fields: &mut Fields, scene: &mut Scene, index: usize) {
     }
     let text: &mut BodyText = &mut scene.body[index];
     fields.slide_or(
-        words.weightless,
+        words.weight,
         &mut text.gravity_scale,
         1.0,
         [-1.0, 2.0, 0.1],
@@ -432,7 +432,7 @@ fn path(fields: &mut Fields, text: &mut ObstacleText) {
 
 fn switch_number(fields: &mut Fields, value: &mut Option<usize>, count: usize) {
     let words = fields.words;
-    let names: Vec<String> = (1..=count.min(6))
+    let names: Vec<String> = (1..=count.min(12))
         .map(|number| number.to_string())
         .collect();
     let mut options = vec![(None, words.none)];
@@ -591,7 +591,7 @@ fn basket(fields: &mut Fields, scene: &mut Scene, index: usize) {
 fn takes(fields: &mut Fields, text: &mut BasketText, bodies: usize) {
     let words = fields.words;
     let [neither, takes, refuses] = words.takes;
-    for number in 1..=bodies.min(6) {
+    for number in 1..=bodies.min(12) {
         let mut role = match () {
             () if text.bodies.contains(&number) => 1,
             () if text.refuses.contains(&number) => 2,

@@ -28,7 +28,6 @@ enum Deed {
     Nudge(usize),
     Scale(i32),
     Copy,
-    Paste,
     Remove,
     Done,
 }
@@ -57,11 +56,7 @@ impl Deed {
         if game.settings.scanning.is_on() {
             all.extend((0..4).map(Self::Nudge));
         }
-        all.push(Self::Copy);
-        if game.can_paste() {
-            all.push(Self::Paste);
-        }
-        all.extend([Self::Remove, Self::Done]);
+        all.extend([Self::Copy, Self::Remove, Self::Done]);
         all
     }
 
@@ -76,7 +71,6 @@ impl Deed {
             Self::Nudge(way) => words.nudge[way],
             Self::Scale(steps) => words.scale[usize::from(steps < 0)],
             Self::Copy => words.copy,
-            Self::Paste => words.paste,
             Self::Remove => words.remove,
             Self::Done => words.done,
         }
@@ -107,7 +101,6 @@ impl Deed {
             Self::Lift(steps) => game.nudge(0.1 * steps * Vec3::Y),
             Self::Scale(steps) => game.scale_selection(steps),
             Self::Copy => game.copy_selection(),
-            Self::Paste => game.paste(),
             Self::Remove => game.remove_selection(),
             Self::Done => game.select_nothing(),
         }
@@ -173,11 +166,16 @@ fn modes(game: &mut Game, ui: &mut Ui, rect: Rect) {
         }
         left += side + GAP;
     }
-    let wide = 0.5 * (rect.right() - left - GAP);
-    for (text, screen) in [
-        (words.level_settings, Screen::Properties),
-        (words.draw_new, Screen::Paper),
-    ] {
+    let mut buttons = vec![
+        (words.level_settings, Mode::Level),
+        (words.draw_new, Mode::Draw),
+    ];
+    if game.can_paste() {
+        buttons.push((words.paste, Mode::Paste));
+    }
+    let count = buttons.len() as f32;
+    let wide = (rect.right() - left - (count - 1.0) * GAP) / count;
+    for (text, mode) in buttons {
         let place = Rect::from_min_size(pos2(left, rect.top()), vec2(wide.min(5.0 * side), side));
         let builder = UiBuilder::new().max_rect(place);
         let pressed = ui.scope_builder(builder, |ui| {
@@ -185,16 +183,25 @@ fn modes(game: &mut Game, ui: &mut Ui, rect: Rect) {
         });
         if pressed.inner {
             game.blip(Menu::Confirm);
-            match screen {
-                Screen::Paper => game.draw_new_body(),
-                _ => {
+            match mode {
+                Mode::Level => {
                     game.select_nothing();
-                    game.go(screen);
+                    game.go(Screen::Properties);
                 }
+                Mode::Draw => game.draw_new_body(),
+                Mode::Paste => game.paste(),
             }
         }
         left = place.right() + GAP;
     }
+}
+
+/// A button beside the switches of the editor.
+#[derive(Copy, Clone)]
+enum Mode {
+    Level,
+    Draw,
+    Paste,
 }
 
 /// Draws the sign of a switch of the editor: a grid, two frames, or two arrows.

@@ -137,7 +137,7 @@ fn point_on(game: &Game, eye: &Eye, at: Pos2) -> Option<Vec3> {
 /// Draws to the point of the block at a point of the screen.
 fn draw_at(game: &mut Game, eye: &Eye, at: Pos2, pressure: f32) {
     if game.maker.before_stroke.is_none() {
-        game.maker.before_stroke = Some(game.maker.block.clone());
+        game.maker.before_stroke = Some(game.maker.block.without_history());
     }
     match point_on(game, eye, at) {
         Some(point) => {

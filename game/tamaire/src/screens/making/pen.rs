@@ -27,7 +27,8 @@ pub(super) struct Moves {
 
 /// Returns the movement of the pen on a sheet.
 pub(super) fn moves(game: &mut Game, ui: &Ui, rect: Rect, sheet: &Response) -> Moves {
-    if sheet.is_pointer_button_down_on() {
+    let is_primary = ui.input(|input| input.pointer.primary_down());
+    if sheet.is_pointer_button_down_on() && is_primary {
         game.maker.cursor = None;
         return of_pointer(ui, sheet);
     }
@@ -62,6 +63,11 @@ fn of_pointer(ui: &Ui, sheet: &Response) -> Moves {
     let mut moves = Moves::default();
     let mut pressure = ui.data(|data| data.get_temp(sheet.id)).unwrap_or(1.0);
     ui.input(|input| {
+        let is_touch = |event: &Event| matches!(event, Event::Touch { .. });
+        if !input.events.is_empty() && !input.events.iter().any(is_touch) {
+            // A mouse has no pressure.
+            pressure = 1.0;
+        }
         for event in &input.events {
             match *event {
                 Event::Touch { force, .. } => {

@@ -97,6 +97,10 @@ fn pixel(drawing: &Drawing, colours: &[[u8; 3]], x: usize, y: usize) -> Color32 
         let cell = drawing.cell([column + i as i32 - 1, row + j as i32 - 1, 0]);
         *near = (cell, across[i] * up[j]);
     }
+    let (first, _) = near[0];
+    if first == 0 && near.iter().all(|(cell, _)| *cell == 0) {
+        return Color32::TRANSPARENT;
+    }
     let share = |crayon: u8| -> f32 {
         let same = near.iter().filter(|(cell, _)| *cell == crayon);
         same.map(|(_, share)| share).sum()
