@@ -97,7 +97,8 @@ fn body(in: Placed) -> @location(0) vec4f {
     let soft = textureSampleLevel(soft_colour, smooth_sampler, in.uv, 0.0);
     let shape = textureSampleLevel(shapes, smooth_sampler, in.uv, 0.0);
     let normal = normalize(vec3f(-shape.xy, 1.0));
-    let base = to_linear(soft.rgb);
+    // The blurred colour looks like the inside of a soft body; some of the sharp one keeps drawn lines visible.
+    let base = to_linear(mix(soft.rgb, sharp.rgb / sharp.a, 0.65));
 
     let torn = smoothstep(0.0, 0.6, relief.g);
     var colour = flesh_colour(base, shape.z, shape.w, torn);

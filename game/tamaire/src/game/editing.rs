@@ -154,7 +154,11 @@ impl Game {
     /// Makes what was previewed a step of undo.
     pub fn settle_preview(&mut self) {
         if self.maker.draft.settle() {
-            self.settle();
+            self.forget_gone();
+            // The room shows the preview, unless that took too long.
+            if self.maker.editor.is_slow {
+                self.show_draft();
+            }
         }
     }
 
@@ -240,13 +244,18 @@ impl Game {
 
     /// Forgets selected items that are gone, and shows the level.
     fn settle(&mut self) {
+        self.forget_gone();
+        self.show_draft();
+    }
+
+    /// Forgets selected items that are gone.
+    fn forget_gone(&mut self) {
         let known = items::items(self.maker.draft.scene());
         let editor = &mut self.maker.editor;
         editor.selection.retain(|item| known.contains(item));
         if editor.selection.is_empty() {
             editor.part = EditorPart::Things;
         }
-        self.show_draft();
     }
 
     /// Goes back to the level before the last change, or forward again.

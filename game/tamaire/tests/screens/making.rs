@@ -11,7 +11,7 @@ use tamaire::words::Language;
 use tamaire_maker::drawing::{Brush, Drawing};
 use tamaire_maker::items::{Item, Kind};
 use tamaire_play::playground::Stuff;
-use tamaire_play::{AnyRound, Level, Link};
+use tamaire_play::{AnyRound, BotKind, Level, Link};
 
 /// Sizes of the window in landscape and portrait orientation.
 const SIZES: [Vec2; 2] = [vec2(1000.0, 640.0), vec2(390.0, 844.0)];
@@ -580,6 +580,14 @@ fn screens_of_making_match_pictures() {
             _ => [Language::Japanese, Language::English],
         };
         picture(&mut window, one, "paper");
+        if tag.is_empty() {
+            game(&mut window).drop_drawing();
+            drive(game(&mut window), BotKind::Idle, |game| {
+                game.bout.round().ticks() < 30
+            });
+            picture(&mut window, one, "dropped");
+            game(&mut window).leave_round();
+        }
         game(&mut window).maker.make_solid(Drawing::puffed);
         picture(&mut window, other, "block");
         start(&mut window, "lever");
