@@ -18,7 +18,7 @@ impl Default for Palette {
 }
 
 /// Returns the material of a crayon with its colour. Jelly and biscuits are tougher than in a playground, because drawings
-/// have thin legs and tails that must bear a fall.
+/// have thin legs and tails that must withstand a fall.
 pub fn crayon(stuff: Stuff) -> MaterialText {
     let colour = match stuff {
         Stuff::Jelly => [240, 110, 130],

@@ -269,7 +269,7 @@ fn is_ignored(path: &[String]) -> bool {
 }
 
 /// Returns a text without control characters and without characters that change the direction of writing.
-fn without_marks(text: &str) -> String {
+pub fn without_marks(text: &str) -> String {
     let is_mark = |letter: char| {
         letter.is_control()
             || matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use tamaire_maker::check::Check;
 use tamaire_maker::draft::{Draft, Language};
 use tamaire_play::level::{LevelError, MAX_KEPT_BYTES};
+use tamaire_play::pack::without_marks;
 use tamaire_play::{Level, Replay};
 
 /// Maximum length of the name of a level or of its maker [characters].
@@ -342,14 +343,7 @@ pub fn cleaned(name: &str) -> String {
 
 /// Returns plain text as [`cleaned`] does, at most `most` characters long.
 fn plain(name: &str, most: usize) -> String {
-    let is_plain = |letter: &char| {
-        let turns = matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-        !letter.is_control() && !turns && *letter != '\u{feff}'
-    };
-    let spaced = name
-        .chars()
-        .map(|letter| if letter == '\t' { ' ' } else { letter });
-    let plain: String = spaced.filter(is_plain).collect();
+    let plain = without_marks(&name.replace('\t', " "));
     let words = plain.split_whitespace().collect::<Vec<_>>().join(" ");
     let cut: String = words.chars().take(most).collect();
     cut.trim_end().to_string()
