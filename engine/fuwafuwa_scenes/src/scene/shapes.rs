@@ -163,6 +163,9 @@ impl ObstacleText {
     }
 }
 
+/// Maximum coordinate of a moving obstacle [m]. The engine refuses targets beyond 1e6 m.
+const FARTHEST: f32 = 5e5;
+
 /// Coupling of a moving obstacle to its target: mass [kg], stiffness [N/m] and damping ratio.
 const COUPLING: [f32; 3] = [10.0, 20_000.0, 1.0];
 
@@ -234,6 +237,13 @@ impl ObstacleText {
             }
         };
         let pivot = self.pivot_of(&shape);
+        for (index, &[_, x, y, z]) in self.path.iter().enumerate() {
+            let at = pivot.to_vec3() + Vec3::new(x, y, z);
+            let expected =
+                format!("expected a place within {FARTHEST} m of the origin, found {at}");
+            let field = format!("path.{}", index + 1);
+            require(at.abs().max_element() <= FARTHEST, &field, expected)?;
+        }
         let body = RigidBody::new(shape.translated(-pivot), motion_type).at(pivot);
         Ok(RigidBody {
             user_data: MOVING_PART,
