@@ -3,8 +3,8 @@
 
 pub use super::keeping::Damage;
 use super::keeping::{
-    RECORDS, is_aside, keep_best, merge_records, name_of_best, put_aside, read_level, save,
-    save_packs, save_replay, stem_of,
+    RECORDS, is_aside, keep_best, keep_text, kept_text, merge_records, name_of_best, put_aside,
+    read_level, save, save_packs, save_replay, stem_of,
 };
 use super::pictures::Pictures;
 use super::storage::{Entry, Kind, Nowhere, Storage};
@@ -228,8 +228,7 @@ impl Files {
         let storage = self.storage.clone();
         let job = move || {
             let text = level.text_to_keep().map_err(io::Error::other)?;
-            let mut change = |_: Option<&[u8]>| Some(text.clone().into_bytes());
-            storage.change(Kind::Level, &level.id, &mut change)
+            keep_text(&*storage, &level.id, &text)
         };
         self.writer.write(job, JobResult::Note);
     }
@@ -237,25 +236,20 @@ impl Files {
     /// Stores the text of a level under its id, and replaces one with the same id.
     pub fn keep_level_text(&mut self, id: &str, text: String) {
         let (storage, id) = (self.storage.clone(), id.to_string());
-        let job = move || {
-            let mut change = |_: Option<&[u8]>| Some(text.clone().into_bytes());
-            storage.change(Kind::Level, &id, &mut change)
-        };
+        let job = move || keep_text(&*storage, &id, &text);
         self.writer.write(job, JobResult::Note);
     }
 
     /// Returns the text of a stored level, as it was written.
     pub fn level_text(&self, id: &str) -> Option<String> {
-        let bytes = self.storage.read(Kind::Level, id).ok().flatten()?;
-        String::from_utf8(bytes).ok()
+        kept_text(&*self.storage, id)
     }
 
     /// Stores the text of a level, and tells where. In a browser, the player gets it as a file.
     pub fn save_level(&mut self, id: &str, text: String) {
         let (storage, id) = (self.storage.clone(), id.to_string());
         let job = move || {
-            let mut change = |_: Option<&[u8]>| Some(text.clone().into_bytes());
-            storage.change(Kind::Level, &id, &mut change)?;
+            keep_text(&*storage, &id, &text)?;
             if storage.can_export() {
                 storage.export(Kind::Level, &id)?;
             }
@@ -271,8 +265,7 @@ impl Files {
             let mut texts = Vec::new();
             for level in levels {
                 // A stored text may have remarks of its author.
-                let stored = storage.read(Kind::Level, &level.id).ok().flatten();
-                let text = match stored.and_then(|bytes| String::from_utf8(bytes).ok()) {
+                let text = match kept_text(&*storage, &level.id) {
                     Some(text) => text,
                     None => level.text_to_keep().map_err(io::Error::other)?,
                 };

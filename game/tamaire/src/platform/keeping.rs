@@ -139,6 +139,18 @@ pub(super) fn keep_best(storage: &dyn Storage, name: &str, replay: &Replay) -> i
     })
 }
 
+/// Stores the text of a level under its id, and replaces one with the same id.
+pub(super) fn keep_text(storage: &dyn Storage, id: &str, text: &str) -> io::Result<()> {
+    let mut change = |_: Option<&[u8]>| Some(text.as_bytes().to_vec());
+    storage.change(Kind::Level, id, &mut change)
+}
+
+/// Returns the text of a stored level, as it was written. `None` if there is none, or it cannot be read.
+pub(super) fn kept_text(storage: &dyn Storage, id: &str) -> Option<String> {
+    let bytes = storage.read(Kind::Level, id).ok().flatten()?;
+    String::from_utf8(bytes).ok()
+}
+
 /// Saves levels, each given by its id and its text, as packs. Returns the location of the last one; usually there is
 /// only one. An earlier pack with other levels stays.
 pub(super) fn save_packs(
