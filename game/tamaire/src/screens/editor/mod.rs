@@ -10,7 +10,7 @@ pub(super) use finish::show as finish;
 pub(super) use properties::{beside_properties, show as properties};
 
 use super::hud;
-use super::making::{round_button, turn_back};
+use super::making::{step_button, step_keys};
 use crate::game::{Game, Screen};
 use app_shell::widgets::{ButtonStyle, button, fitted};
 use egui::{Key, Modifiers, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
@@ -83,15 +83,7 @@ fn top(game: &mut Game, ui: &mut Ui, rect: Rect) -> bool {
     for (way, name, is_able) in steps {
         let side = high.min(0.5 * (right - left) - GAP);
         let place = Rect::from_min_size(pos2(left, rect.top()), Vec2::splat(side));
-        let ink = if is_able {
-            theme.ink
-        } else {
-            theme.faint.gamma_multiply(0.5)
-        };
-        let response = round_button(ui, &theme, place, name, None, |painter, at, scale| {
-            turn_back(painter, at, scale, ink, way);
-        });
-        if response.clicked() {
+        if step_button(ui, &theme, place, name, way, is_able) {
             game.blip(Menu::Confirm);
             game.undo_edit(way > 0.0);
         }
@@ -127,10 +119,10 @@ fn keys(game: &mut Game, ui: &Ui) {
     }
     let pressed = |key, modifiers| ui.input_mut(|input| input.consume_key(modifiers, key));
     let command = Modifiers::COMMAND;
-    let shifted = command | Modifiers::SHIFT;
-    if pressed(Key::Z, shifted) || pressed(Key::Y, command) {
+    let [undoes, redoes] = step_keys(ui);
+    if redoes {
         game.undo_edit(true);
-    } else if pressed(Key::Z, command) {
+    } else if undoes {
         game.undo_edit(false);
     } else if pressed(Key::D, command) {
         game.copy_selection();

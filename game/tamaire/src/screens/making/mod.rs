@@ -6,7 +6,7 @@ mod pen;
 mod picture;
 mod tools;
 
-pub(super) use tools::{round as round_button, turn_back};
+pub(super) use tools::{round as round_button, step_button, step_keys};
 
 use super::hud;
 use super::widgets::{dim_background, track};

@@ -370,15 +370,7 @@ pub(super) fn history(game: &mut Game, ui: &mut Ui, rect: Rect) {
         let at = rect.center() + vec2(way * (0.5 * side + 3.0), 0.0);
         let place = Rect::from_center_size(at, Vec2::splat(side));
         let theme = game.theme();
-        let ink = if is_able {
-            theme.ink
-        } else {
-            theme.faint.gamma_multiply(0.5)
-        };
-        let response = round(ui, &theme, place, name, None, |painter, at, scale| {
-            turn_back(painter, at, scale, ink, way);
-        });
-        if response.clicked() {
+        if step_button(ui, &theme, place, name, way, is_able) {
             game.blip(Menu::Confirm);
             game.maker.lift_pen();
             game.maker.picture = None;
@@ -390,12 +382,7 @@ pub(super) fn history(game: &mut Game, ui: &mut Ui, rect: Rect) {
             }
         }
     }
-    let [undoes, redoes] = ui.input_mut(|input| {
-        use egui::{Key, Modifiers};
-        let redoes = input.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z)
-            || input.consume_key(Modifiers::COMMAND, Key::Y);
-        [input.consume_key(Modifiers::COMMAND, Key::Z), redoes]
-    });
+    let [undoes, redoes] = step_keys(ui);
     if undoes {
         game.maker.lift_pen();
         game.maker.drawing_mut().undo();
@@ -406,14 +393,39 @@ pub(super) fn history(game: &mut Game, ui: &mut Ui, rect: Rect) {
     }
 }
 
-/// Draws an arrow that bends back to the left (`way` = -1) or to the right.
-pub(in crate::screens) fn turn_back(
-    painter: &Painter,
-    at: Pos2,
-    scale: f32,
-    ink: Color32,
+/// Shows the button for undo (`way` = -1) or redo. Returns whether it is pressed.
+pub(in crate::screens) fn step_button(
+    ui: &mut Ui,
+    theme: &Theme,
+    place: Rect,
+    name: &str,
     way: f32,
-) {
+    is_able: bool,
+) -> bool {
+    let ink = if is_able {
+        theme.ink
+    } else {
+        theme.faint.gamma_multiply(0.5)
+    };
+    let response = round(ui, theme, place, name, None, |painter, at, scale| {
+        turn_back(painter, at, scale, ink, way);
+    });
+    response.clicked()
+}
+
+/// Returns whether the keys for undo and for redo are pressed.
+pub(in crate::screens) fn step_keys(ui: &Ui) -> [bool; 2] {
+    use egui::{Key, Modifiers};
+    ui.input_mut(|input| {
+        // First, because Ctrl+Z matches Ctrl+Shift+Z, too.
+        let redoes = input.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z)
+            || input.consume_key(Modifiers::COMMAND, Key::Y);
+        [input.consume_key(Modifiers::COMMAND, Key::Z), redoes]
+    })
+}
+
+/// Draws an arrow that bends back to the left (`way` = -1) or to the right.
+fn turn_back(painter: &Painter, at: Pos2, scale: f32, ink: Color32, way: f32) {
     let point = |x: f32, y: f32| at + scale * vec2(way * x, y);
     let arc = (0..=12).map(|k| {
         let angle = std::f32::consts::PI * (k as f32 / 12.0);
