@@ -8,7 +8,7 @@ pub use crate::foundation::dim::{
 };
 pub use crate::foundation::hash::Hash;
 pub use crate::math::row::Row;
-pub use crate::soft_body::element_law::{Elasticity, Matrix, forces};
+pub use crate::soft_body::element_law::{ElasticLaw, Elasticity, Matrix, forces};
 pub use crate::soft_body::plasticity::{
     Plasticity, elastic_part, flow, forces_after, plastic_stiffness_factor,
 };

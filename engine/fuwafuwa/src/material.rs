@@ -1,17 +1,23 @@
 //! Materials of voxels.
 
 use crate::error::{Error, require};
-use crate::foundation::hash::hash_state;
+use crate::foundation::hash::{Hash, HashState};
 use crate::soft_body::element_law::Elasticity;
+use crate::soft_body::hyperelasticity::StressLaw;
 use crate::soft_body::plasticity::Plasticity;
 use crate::soft_body::rayleigh::Damping;
+use crate::soft_body::viscosity::PronyTerm;
 
 /// Material of a voxel.
 #[derive(Copy, Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Material {
-    /// Elastic constants: stiffness and lateral expansion.
+    /// Elastic constants: stiffness and lateral expansion, at small strains and at rest.
     pub elasticity: Elasticity,
+    /// Relation between stress and large strain; default [`StressLaw::Corotational`].
+    pub stress_law: StressLaw,
+    /// Viscoelasticity: two terms of a Prony series, default none.
+    pub prony: [PronyTerm; 2],
     /// Density [kg/m³]; usually about 100. In 2D it is that of a sheet 1 m deep.
     pub density: f32,
     /// Rayleigh damping: mass damping [1/s] and stiffness damping [s].
@@ -54,7 +60,8 @@ pub struct Material {
     /// permanent; volume is preserved.
     ///
     /// 0.05 is clay, which keeps its pressed shape; 0.3 is dough, which yields slowly. Far below 0.01, a body
-    /// flows under its own weight. Ignored under [`Law::Endo2004`](crate::Law::Endo2004).
+    /// flows under its own weight. Ignored under [`Law::Endo2004`](crate::Law::Endo2004); must be infinite under a
+    /// hyperelastic [`stress_law`](Self::stress_law).
     pub yield_strain: f32,
     /// Plastic limit, 1 to 4: the largest factor by which plastic flow can shrink a width; usually about 2.
     /// An element at the limit deforms only elastically. A higher limit allows thinner sheets, but also
@@ -62,10 +69,44 @@ pub struct Material {
     pub plastic_limit: f32,
 }
 
-hash_state! {
-    struct Material {
-        elasticity, density, damping, friction, rolling_resistance, strength,
-        strength_scatter, toughness, yield_strain, plastic_limit,
+impl HashState for Material {
+    /// Stress law and Prony series are hashed only if they differ from the default, so that the hashes of worlds
+    /// without them are those of earlier versions.
+    fn hash_state(&self, hash: &mut Hash) {
+        let Self {
+            elasticity,
+            stress_law,
+            prony,
+            density,
+            damping,
+            friction,
+            rolling_resistance,
+            strength,
+            strength_scatter,
+            toughness,
+            yield_strain,
+            plastic_limit,
+        } = self;
+        elasticity.hash_state(hash);
+        density.hash_state(hash);
+        damping.hash_state(hash);
+        for number in [
+            friction,
+            rolling_resistance,
+            strength,
+            strength_scatter,
+            toughness,
+            yield_strain,
+            plastic_limit,
+        ] {
+            number.hash_state(hash);
+        }
+        if *stress_law != StressLaw::Corotational {
+            stress_law.hash_state(hash);
+        }
+        if *prony != [PronyTerm::NONE; 2] {
+            prony.iter().for_each(|term| term.hash_state(hash));
+        }
     }
 }
 
@@ -79,6 +120,8 @@ impl Default for Material {
                 young: 5000.0,
                 poisson: 0.3,
             },
+            stress_law: StressLaw::Corotational,
+            prony: [PronyTerm::NONE; 2],
             density: 100.0,
             damping: Damping::default(),
             friction: 0.4,
@@ -100,6 +143,8 @@ impl Material {
     pub fn check(&self) -> Result<(), Error> {
         let Elasticity { young, poisson } = self.elasticity;
         Elasticity::new(young, poisson)?;
+        self.stress_law.check()?;
+        self.prony.into_iter().try_for_each(PronyTerm::check)?;
         let within = |field, given: f32, low: f32, high: f32, expected| {
             require(given >= low && given <= high, field, expected, given)
         };
@@ -126,7 +171,10 @@ impl Material {
             infinite,
             "positive",
         )?;
-        within("plastic_limit", self.plastic_limit, 1.0, 4.0, "1 to 4")
+        within("plastic_limit", self.plastic_limit, 1.0, 4.0, "1 to 4")?;
+        let is_valid = self.yield_strain == infinite || self.stress_law == StressLaw::Corotational;
+        let expected = "infinite under a hyperelastic stress law";
+        require(is_valid, "yield_strain", expected, self.yield_strain)
     }
 
     /// Soft clay for a game: keeps the shape into which it is pressed.
@@ -172,6 +220,11 @@ impl Material {
         })
     }
 
+    /// Returns whether the material is viscoelastic.
+    pub(crate) fn is_viscous(&self) -> bool {
+        self.prony.iter().any(|term| term.ratio > 0.0)
+    }
+
     /// Fracture energy per area of crack in plane strain: toughness² (1 − ν²) / Y [J/m²] [Irwin 1957].
     pub fn fracture_energy(&self) -> f32 {
         let Elasticity { young, poisson } = self.elasticity;
@@ -179,10 +232,21 @@ impl Material {
         (toughness * toughness * (1.0 - poisson * poisson) / young) as f32
     }
 
-    /// Speed of a pressure wave [m/s]: √((λ + 2µ) / ρ), with Lamé's parameters λ and µ and the density ρ.
+    /// Shear modulus at the time `time` [s] after a sudden shear, divided by the shear modulus at rest:
+    /// 1 + Σ gᵢ exp(−t/τᵢ), with the terms of the [Prony series](Self::prony).
+    pub fn relaxation(&self, time: f64) -> f64 {
+        let terms = self
+            .prony
+            .iter()
+            .map(|term| f64::from(term.ratio) * libm::exp(-time.max(0.0) / f64::from(term.time)));
+        1.0 + terms.sum::<f64>()
+    }
+
+    /// Speed of a pressure wave [m/s]: √((λ + 2µ) / ρ), with Lamé's parameters λ and µ of fast motion and the
+    /// density ρ.
     pub fn wave_speed(&self) -> f64 {
-        let stiffness = self.elasticity.lame() + 2.0 * self.elasticity.shear_modulus();
-        (stiffness / f64::from(self.density)).sqrt()
+        let shear = self.elasticity.shear_modulus() * self.relaxation(0.0);
+        ((self.elasticity.lame() + 2.0 * shear) / f64::from(self.density)).sqrt()
     }
 
     /// Returns Ω s [m/s]: the angular frequency Ω of the breathing mode of a single free voxel, times the
@@ -194,7 +258,8 @@ impl Material {
     /// corners. Therefore Ω² = 4 N (λ + 2µ/N) / ρs².
     pub(crate) fn breathing_speed(&self, dimensions: usize) -> f64 {
         let axes = dimensions as f64;
-        let stiffness = axes * self.elasticity.lame() + 2.0 * self.elasticity.shear_modulus();
+        let shear = self.elasticity.shear_modulus() * self.relaxation(0.0);
+        let stiffness = axes * self.elasticity.lame() + 2.0 * shear;
         2.0 * (stiffness / f64::from(self.density)).sqrt()
     }
 }

@@ -10,7 +10,7 @@ use crate::foundation::hash::Hash;
 use crate::world::{StoredWorld, World};
 
 /// Version of the format. It changes when an older snapshot would be misread or would continue differently.
-pub const VERSION: u32 = 24;
+pub const VERSION: u32 = 25;
 
 const MAGIC: [u8; 4] = *b"fuwa";
 const HEADER: usize = 17;

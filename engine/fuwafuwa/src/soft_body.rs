@@ -6,11 +6,13 @@ pub mod element_forces;
 pub mod element_law;
 pub mod element_state;
 pub(crate) mod fast_motion;
+pub mod hyperelasticity;
 pub mod momentum;
 pub mod plasticity;
 pub mod rayleigh;
 pub mod region_sums;
 pub mod view;
+pub mod viscosity;
 
 mod access;
 mod body_properties;
@@ -47,7 +49,7 @@ use crate::topology::grid::VoxelGrid;
 use crate::topology::mesh::{Element, Mesh};
 use crate::topology::pieces::Pieces;
 use crate::topology::skin::Skin;
-use body_properties::{BodyProperties, elasticities, plasticities};
+use body_properties::BodyProperties;
 pub(crate) use body_state::MAX_GRAVITY_SCALE;
 use body_state::State;
 use body_topology::Topology;
@@ -123,9 +125,7 @@ impl<D: Dim> SoftBody<D> {
         let mesh = Mesh::grade(&grid, &connectivity, &hierarchy).expect(
             "a cell hierarchy matches the grid and the connectivity from which it was made",
         );
-        let mut batches =
-            ElementBatches::new(law, &elasticities(materials, 1.0), grid.voxel_size());
-        batches.set_plasticities(&plasticities(materials));
+        let batches = ElementBatches::new(law, materials, grid.voxel_size());
         let mut body = Self {
             topology: Topology {
                 pieces: Pieces::new(&mesh),
@@ -169,8 +169,9 @@ impl<D: Dim> SoftBody<D> {
             ..
         } = &self.topology;
         self.cache.properties = BodyProperties::of(grid, materials);
-        let elasticities = elasticities(materials, *stiffness_scale);
-        self.state.batches.set_elasticities(&elasticities);
+        self.state
+            .batches
+            .set_materials(materials, *stiffness_scale);
         self.make_room();
         let voxels: Vec<Point> = self.topology.grid.voxels().collect();
         self.expose(&voxels);

@@ -161,6 +161,8 @@ impl<D: Dim> World<D> {
     /// Advances the world by one tick, on the calling thread and others of its pool.
     fn advance(&mut self, hooks: &mut Hooks<'_, D>) -> StepReport {
         self.events.clear();
+        let config = &self.config;
+        for_each_body(&mut self.bodies, |_, body| body.follow_stiffening(config));
         let substeps = self.substeps();
         let duration = self.config.tick / substeps as f32;
         let rounds = self.config.fracture_rounds_per_tick();

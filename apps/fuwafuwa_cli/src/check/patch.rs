@@ -90,7 +90,7 @@ fn residual<D: Dim>(mesh: &Mesh<D>, sharing: &Connectivity<D>, law: Law) -> Resu
         let size = f64::from(element.cell.width());
         let all = forces(
             law,
-            elasticity,
+            elasticity.into(),
             mesh.element_class(element),
             size,
             &positions,

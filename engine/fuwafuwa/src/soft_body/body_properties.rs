@@ -2,8 +2,6 @@
 
 use crate::foundation::dim::Dim;
 use crate::material::Material;
-use crate::soft_body::element_law::Elasticity;
-use crate::soft_body::plasticity::Plasticity;
 use crate::topology::grid::VoxelGrid;
 
 /// Properties of a whole body, combined from the materials of its voxels.
@@ -24,6 +22,8 @@ pub struct BodyProperties {
     /// Largest product of the angular frequency of the breathing mode of a voxel and the width of the voxel
     /// [m/s].
     pub fastest_breathing: f64,
+    /// Whether a material in use is hyperelastic.
+    pub is_hyperelastic: bool,
 }
 
 impl BodyProperties {
@@ -60,18 +60,7 @@ impl BodyProperties {
             least_strength: strengths.fold(f32::INFINITY, f32::min),
             fastest_wave: waves.fold(0.0, f64::max),
             fastest_breathing: breathing.fold(0.0, f64::max),
+            is_hyperelastic: used().any(|(_, material)| material.stress_law.factors().is_some()),
         }
     }
-}
-
-pub fn plasticities(materials: &[Material]) -> Vec<Option<Plasticity>> {
-    materials.iter().map(Material::plasticity).collect()
-}
-
-pub fn elasticities(materials: &[Material], stiffness_scale: f64) -> Vec<Elasticity> {
-    let soft = |material: &Material| Elasticity {
-        young: material.elasticity.young * stiffness_scale,
-        ..material.elasticity
-    };
-    materials.iter().map(soft).collect()
 }

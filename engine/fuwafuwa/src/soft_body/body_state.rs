@@ -7,6 +7,7 @@ use crate::foundation::ids::{IndexVec, NodeId};
 use crate::fracture::tip_deviations::TipDeviations;
 use crate::rigid_body::layers::Layers;
 use crate::soft_body::element_forces::{ElementBatches, Row};
+use crate::soft_body::stiff_body::Stiffening;
 
 /// Largest absolute value of a body's gravity scale. At this scale, a body under the gravity of the earth
 /// falls by 1 m within three ticks of 1/60 s.
@@ -48,7 +49,9 @@ pub struct State<D: Dim> {
     pub placed: bool,
     /// Whether the stiffness scale or the mass scale has changed since the last tick.
     pub scale_changed: bool,
-    /// Batches of elements. Snapshots contain only the rotation and plastic deformation of each element and
+    /// Stiffening of hyperelastic elements at the beginning of the last tick.
+    pub stiffening: Stiffening,
+    /// Batches of elements. Snapshots contain only the rotation and the internal state of each element and
     /// the forces of the last substep. Each substep continues from the last rotations, and the last forces
     /// decide where the next crack runs.
     pub batches: ElementBatches<D>,
@@ -57,7 +60,7 @@ pub struct State<D: Dim> {
 hash_state! {
     [D: Dim] struct State<D> {
         position, velocity, mass, inverse_mass, fixed, damage, cooldowns, tip_deviations, ahead,
-        gravity_scale, layers, user_data, placed, scale_changed, batches,
+        gravity_scale, layers, user_data, placed, scale_changed, stiffening, batches,
     }
 }
 
@@ -79,6 +82,7 @@ impl<D: Dim> State<D> {
             user_data: 0,
             placed: false,
             scale_changed: false,
+            stiffening: Stiffening::default(),
             batches,
         }
     }

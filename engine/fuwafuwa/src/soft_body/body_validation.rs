@@ -2,7 +2,6 @@
 //! invalid values.
 
 use super::SoftBody;
-use super::body_properties::plasticities;
 use super::body_state::{MAX_GRAVITY_SCALE, State};
 use super::body_topology::Topology;
 use crate::foundation::dim::Dim;
@@ -37,6 +36,7 @@ impl<D: Dim> SoftBody<D> {
         let is_known = points
             .is_some_and(|mut points| points.all(|at| self.topology.connectivity.contains(at)));
         ensure(is_known, "deviations of crack tips")?;
+        ensure(self.state.stiffening.is_valid(), "stiffening")?;
         for (id, node) in self.topology.mesh.nodes() {
             let defect = |what: &str| {
                 Err(InvariantViolation::of(format!(
@@ -61,12 +61,13 @@ impl<D: Dim> SoftBody<D> {
             mesh,
             grid,
             materials,
+            stiffness_scale,
             pieces,
             ..
         } = &self.topology;
         let asleep = |id: ElementId| pieces.list[pieces.of_element(id)].asleep;
-        let (batches, plasticities) = (&mut self.state.batches, plasticities(materials));
-        batches.restore(mesh, grid, &plasticities, asleep);
+        let batches = &mut self.state.batches;
+        batches.restore(mesh, grid, materials, *stiffness_scale, asleep);
         self.rebuild();
     }
 

@@ -16,12 +16,16 @@ mod batch;
 mod batch_assignment;
 mod force_kernel;
 mod hashing;
+mod internal_state;
+mod material_constants;
 mod plastic_kernel;
 #[cfg(feature = "serde")]
 mod restoring;
 mod rotation_extraction;
 #[cfg(feature = "serde")]
 mod saved_states;
+mod stress_kernel;
+mod viscous_kernel;
 
 pub use crate::math::row::Row;
 
@@ -29,15 +33,15 @@ use crate::foundation::copy_on_write::CopyOnWrite;
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId};
 use crate::foundation::threads::{self, RowChunk, Run};
+use crate::material::Material;
 use crate::math::lanes::{Eight, LANES, four, on_widest_lanes, sum, sum_of_squares};
 use crate::math::rotation::Rotation;
-use crate::soft_body::element_law::{Elasticity, Law};
-use crate::soft_body::plasticity::Plasticity;
+use crate::soft_body::element_law::Law;
 use batch::{BATCHES_PER_SHARE, Batch, BatchKey, Share, Shared, VACANT, evaluate_best};
 use fearless_simd::prelude::*;
-use force_kernel::Moduli;
 use glam::{Mat3, Quat, Vec3};
-use plastic_kernel::PlasticFlowLimits;
+pub use internal_state::InternalState;
+use material_constants::MaterialConstants;
 use std::collections::{BTreeMap, BTreeSet};
 use std::marker::PhantomData;
 
@@ -49,10 +53,8 @@ const PAD: usize = 4;
 #[derive(Clone, Debug)]
 pub struct ElementBatches<D: Dim> {
     law: Law,
-    moduli: Vec<Moduli>,
-    /// Plastic flow limits by material number − 1; `None` for elastic materials. Empty under
-    /// [`Law::Endo2004`].
-    flows: Vec<Option<PlasticFlowLimits>>,
+    /// Constants of each material, by material number − 1.
+    materials: Vec<MaterialConstants>,
     voxel_size: f32,
     batches: Vec<Batch>,
     /// Indices of the batches that have both elements and vacant lanes, by the common properties of their
@@ -109,13 +111,12 @@ const fn parts<D: Dim>() -> usize {
 }
 
 impl<D: Dim> ElementBatches<D> {
-    /// Creates batches without elements. `elasticities[number - 1]` belongs to material `number`;
-    /// `voxel_size` is in metres.
-    pub fn new(law: Law, elasticities: &[Elasticity], voxel_size: f32) -> Self {
+    /// Creates batches without elements. `materials[number - 1]` belongs to material `number`; `voxel_size` is
+    /// in metres.
+    pub fn new(law: Law, materials: &[Material], voxel_size: f32) -> Self {
         Self {
             law,
-            moduli: moduli::<D>(elasticities),
-            flows: Vec::new(),
+            materials: MaterialConstants::of_all::<D>(law, materials, 1.0),
             voxel_size,
             batches: Vec::new(),
             open: BTreeMap::new(),
@@ -138,56 +139,55 @@ impl<D: Dim> ElementBatches<D> {
         self.law
     }
 
-    /// Sets the elasticity of each material.
-    pub fn set_elasticities(&mut self, elasticities: &[Elasticity]) {
-        self.moduli = moduli::<D>(elasticities);
+    /// Sets the constants of the materials, with Young's modulus multiplied by `stiffness_scale`.
+    pub fn set_materials(&mut self, materials: &[Material], stiffness_scale: f64) {
+        self.materials = MaterialConstants::of_all::<D>(self.law, materials, stiffness_scale);
     }
 
-    /// Sets the plasticity of each material; `None` = elastic. Must be called before elements are added.
-    /// Ignored under [`Law::Endo2004`].
-    pub fn set_plasticities(&mut self, plasticities: &[Option<Plasticity>]) {
-        self.flows.clear();
-        if self.law == Law::CorotationalVem {
-            let flow = |plasticity: &Option<Plasticity>| plasticity.map(PlasticFlowLimits::of::<D>);
-            self.flows.extend(plasticities.iter().map(flow));
-        }
+    /// Returns the internal state of an element; `None` if its material has none.
+    pub fn internal_state(&self, id: ElementId) -> Option<InternalState> {
+        let &(batch, lane) = self.assigned.get(id.index())?;
+        let internal = self.batches.get(batch as usize)?.internal.as_ref()?;
+        Some(internal.get(lane as usize))
     }
 
     /// Returns the rows of the plastic inverse G of an element ([`crate::soft_body::plasticity`]); `None` if
     /// the material of the element is elastic.
     pub fn plastic_inverse(&self, id: ElementId) -> Option<[Vec3; 3]> {
-        let &(batch, lane) = self.assigned.get(id.index())?;
-        let batch = self.batches.get(batch as usize)?;
-        let plastic_inverse = batch.plastic_inverse.as_ref()?;
-        Some(plastic_inverse.get(lane as usize))
+        let &(batch, _) = self.assigned.get(id.index())?;
+        let material = self.batches.get(batch as usize)?.key.material;
+        self.materials[material as usize - 1].flow.as_ref()?;
+        Some(self.internal_state(id)?.plastic_inverse)
     }
 
-    /// Sets the plastic inverse of an element, given by rows.
-    pub fn set_plastic_inverse(&mut self, id: ElementId, plastic_inverse: [Vec3; 3]) {
+    /// Sets the internal state of an element, if its material has one.
+    pub fn set_internal_state(&mut self, id: ElementId, state: InternalState) {
         let (batch, lane) = self.assigned[id];
-        if let Some(own) = &mut self.batches[batch as usize].plastic_inverse {
-            own.set(lane as usize, plastic_inverse);
+        if let Some(internal) = &mut self.batches[batch as usize].internal {
+            internal.set(lane as usize, state);
         }
     }
 
-    /// Returns whether any material is plastic.
-    pub fn has_plastic(&self) -> bool {
-        self.flows.iter().any(Option::is_some)
+    /// Returns whether the elements of any material have an internal state.
+    pub fn has_internal_state(&self) -> bool {
+        self.materials
+            .iter()
+            .any(MaterialConstants::has_internal_state)
     }
 
-    /// Computes the forces of all awake elements. `positions[number - 1]` are the node positions [m] for the
-    /// elements of material `number`.
-    pub fn evaluate(&mut self, positions: &[&[Row]]) {
-        threads::map(self.shares(), |share| evaluate_best::<D>(share, positions));
+    /// Computes the forces of all awake elements, and advances their internal state by a substep of `duration`
+    /// [s]. `positions[number - 1]` are the node positions [m] for the elements of material `number`.
+    pub fn evaluate(&mut self, positions: &[&[Row]], duration: f32) {
+        let shares = self.shares(duration);
+        threads::map(shares, |share| evaluate_best::<D>(share, positions));
     }
 
     /// Splits the batches into shares that write disjoint data, so that the result is bitwise identical for
     /// any number of threads.
-    fn shares(&mut self) -> impl Iterator<Item = Share<'_>> {
+    fn shares(&mut self, duration: f32) -> impl Iterator<Item = Share<'_>> {
         let Self {
             law,
-            moduli,
-            flows,
+            materials,
             class_data,
             pooled_class_data,
             nodes,
@@ -195,8 +195,8 @@ impl<D: Dim> ElementBatches<D> {
         } = self;
         let shared = Shared {
             law: *law,
-            moduli,
-            flows,
+            materials,
+            duration,
             class_data,
             pooled_class_data,
             nodes,
@@ -362,17 +362,14 @@ impl<D: Dim> ElementBatches<D> {
     }
 }
 
-fn moduli<D: Dim>(elasticities: &[Elasticity]) -> Vec<Moduli> {
-    let elasticities = elasticities.iter().copied();
-    elasticities.map(Moduli::of::<D>).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::batch::{GROUP, evaluate_share};
     use super::force_kernel::Scratch;
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
+    use crate::soft_body::hyperelasticity::StressLaw;
+    use crate::soft_body::viscosity::PronyTerm;
     use crate::topology::cell_hierarchy::{CellHierarchy, Grading};
     use crate::topology::connectivity::Connectivity;
     use crate::topology::grid::VoxelGrid;
@@ -380,13 +377,12 @@ mod tests {
 
     /// Checks that the lanes of `simd` give the same bits as the widest lanes of this machine. The test body
     /// has batches of a single class and pooled batches.
-    fn check_same_bits<D: Dim, S: Simd>(law: Law, simd: S) {
+    fn check_same_bits<D: Dim, S: Simd>(law: Law, material: &Material, simd: S) {
         let grid = VoxelGrid::<D>::ball(24, 1.0).unwrap();
         let connectivity = Connectivity::new(&grid);
         let hierarchy = CellHierarchy::new(&grid, &connectivity, Grading::Graded);
         let mesh = Mesh::grade(&grid, &connectivity, &hierarchy).unwrap();
-        let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
-        let mut wide = ElementBatches::new(law, &[elasticity], grid.voxel_size());
+        let mut wide = ElementBatches::new(law, &[*material], grid.voxel_size());
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
         wide.update(&mesh, &grid, &[], &all, |_| false);
         let mut other = wide.clone();
@@ -401,10 +397,11 @@ mod tests {
             ];
             position[id.index()][..D::N].copy_from_slice(&bent[..D::N]);
         }
+        let duration = 1e-3;
         for _ in 0..3 {
-            wide.evaluate(&[&position]);
+            wide.evaluate(&[&position], duration);
             let mut scratch = [Scratch::EMPTY; GROUP];
-            for share in other.shares() {
+            for share in other.shares(duration) {
                 let scratch = &mut scratch;
                 simd.vectorize(|| evaluate_share::<D, _>(simd, share, &[&position], scratch));
             }
@@ -444,9 +441,9 @@ mod tests {
         let connectivity = Connectivity::new(&grid);
         let hierarchy = CellHierarchy::new(&grid, &connectivity, Grading::Graded);
         let mesh = Mesh::grade(&grid, &connectivity, &hierarchy).unwrap();
-        let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
+        let materials = [Material::default()];
         let mut batches =
-            ElementBatches::<D>::new(Law::CorotationalVem, &[elasticity], grid.voxel_size());
+            ElementBatches::<D>::new(Law::CorotationalVem, &materials, grid.voxel_size());
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
         batches.update(&mesh, &grid, &[], &all, |_| false);
         let mut position = vec![Row::ZERO; mesh.node_capacity()];
@@ -456,7 +453,7 @@ mod tests {
                 let bent = [x - bend * y * y, bend * x + y, z + bend * x * y, 0.0];
                 position[id.index()][..D::N].copy_from_slice(&bent[..D::N]);
             }
-            batches.evaluate(&[&position]);
+            batches.evaluate(&[&position], 1e-3);
         };
         evaluate(&mut batches, 0.1);
         let sleeps = |id: &ElementId| id.0 % 4 < 3;
@@ -505,14 +502,31 @@ mod tests {
 
     #[test]
     fn lanes_of_all_widths_give_same_bits() {
-        for law in [Law::CorotationalVem, Law::Endo2004] {
+        let usual = Material::default();
+        let yeoh = Material {
+            stress_law: StressLaw::Yeoh {
+                second: 0.1,
+                third: -0.01,
+            },
+            ..usual
+        };
+        let viscous_clay = Material {
+            prony: [PronyTerm::new(1.0, 0.01), PronyTerm::new(0.5, 1.0)],
+            ..Material::clay()
+        };
+        for (law, material) in [
+            (Law::CorotationalVem, usual),
+            (Law::Endo2004, usual),
+            (Law::CorotationalVem, yeoh),
+            (Law::CorotationalVem, viscous_clay),
+        ] {
             // Scalar lanes are not tested in debug builds, in which compiling them takes four minutes and
             // several gigabytes.
             #[cfg(not(debug_assertions))]
             {
                 let plain = fearless_simd::Fallback::new();
-                check_same_bits::<Dim2, _>(law, plain);
-                check_same_bits::<Dim3, _>(law, plain);
+                check_same_bits::<Dim2, _>(law, &material, plain);
+                check_same_bits::<Dim3, _>(law, &material, plain);
             }
             // Tests only lanes narrower than the widest lanes of this machine, which give the reference
             // result.
@@ -520,8 +534,8 @@ mod tests {
             {
                 let level = fearless_simd::Level::baseline();
                 let sse2 = level.as_sse2().expect("every x86-64 has SSE2");
-                check_same_bits::<Dim2, _>(law, sse2);
-                check_same_bits::<Dim3, _>(law, sse2);
+                check_same_bits::<Dim2, _>(law, &material, sse2);
+                check_same_bits::<Dim3, _>(law, &material, sse2);
             }
         }
     }

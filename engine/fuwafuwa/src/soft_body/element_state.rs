@@ -2,12 +2,15 @@
 
 use crate::foundation::dim::{Dim, DimVector};
 use crate::foundation::ids::{ElementId, NodeId};
+use crate::material::Material;
 use crate::soft_body::SoftBody;
 use crate::soft_body::element_law::{
-    Elasticity, IDENTITY, Law, MIN_VOLUME_RATIO, Matrix, cofactor, deformation_of, hourglass,
+    ElasticLaw, IDENTITY, Law, MIN_VOLUME_RATIO, Matrix, cofactor, deformation_of, hourglass,
     rotation_of, shape_matching_offsets, volume_of,
 };
+use crate::soft_body::hyperelasticity;
 use crate::soft_body::plasticity::{elastic_part, plastic_stiffness_factor, stress_after};
+use crate::soft_body::viscosity::viscous_stress;
 use crate::topology::element_class::ElementClass;
 use glam::DVec3;
 
@@ -35,12 +38,12 @@ pub struct ElementState {
 #[inline(never)]
 pub fn element_state<D: Dim>(
     law: Law,
-    elasticity: Elasticity,
+    elastic: ElasticLaw,
     element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
 ) -> ElementState {
-    element_state_plastic(law, elasticity, &IDENTITY, element_class, size, positions)
+    element_state_plastic(law, elastic, &IDENTITY, element_class, size, positions)
 }
 
 /// Returns the state of an element that is `size` [m] wide and has its nodes at `positions` [m].
@@ -51,7 +54,7 @@ pub fn element_state<D: Dim>(
 #[inline(never)]
 pub fn element_state_plastic<D: Dim>(
     law: Law,
-    elasticity: Elasticity,
+    elastic: ElasticLaw,
     plastic_inverse: &Matrix,
     element_class: &ElementClass<D>,
     size: f64,
@@ -62,6 +65,7 @@ pub fn element_state_plastic<D: Dim>(
         element_class.slots.len(),
         "the number of positions must match the nodes of the element class"
     );
+    let elasticity = elastic.elasticity;
     let (whole, centre) = deformation_of(element_class, size, positions);
     let deformation = elastic_part(&whole, plastic_inverse);
     let rotation = rotation_of(&deformation);
@@ -89,7 +93,7 @@ pub fn element_state_plastic<D: Dim>(
         };
     }
     let squash = deformation[0].dot(cofactor(&deformation)[0]);
-    let nominal = stress_after::<D>(elasticity, &whole, plastic_inverse);
+    let nominal = stress_after::<D>(elastic, &whole, plastic_inverse);
     let mut cauchy = [DVec3::ZERO; 3];
     for i in 0..3 {
         for j in 0..3 {
@@ -99,9 +103,14 @@ pub fn element_state_plastic<D: Dim>(
     let squared: f64 = strain.iter().map(|&row| row.dot(row)).sum();
     let spread = strain[0][0] + strain[1][1] + strain[2][2];
     let below = (MIN_VOLUME_RATIO - squash).max(0.0);
-    let density = elasticity.shear_modulus() * squared
-        + 0.5 * elasticity.lame() * spread * spread
-        + 0.5 * elasticity.young * below * below;
+    let density = match elastic.stress_law.factors() {
+        Some(factors) => hyperelasticity::energy(elasticity, factors, &deformation),
+        None => {
+            elasticity.shear_modulus() * squared
+                + 0.5 * elasticity.lame() * spread * spread
+                + 0.5 * elasticity.young * below * below
+        }
+    };
     let half = 0.5 * size;
     let (stiffness, hourglass) =
         hourglass(elasticity, element_class, size, positions, &whole, centre);
@@ -114,6 +123,29 @@ pub fn element_state_plastic<D: Dim>(
         strain,
         stress: cauchy,
         energy,
+    }
+}
+
+/// Adds the stress and the energy of the Prony series to the state of an element with the volume `volume` [m³].
+fn add_viscous_part<D: Dim>(
+    state: &mut ElementState,
+    material: &Material,
+    plastic_inverse: &Matrix,
+    dashpots: &[[f32; 6]; 2],
+    volume: f64,
+) {
+    let whole = state.deformation;
+    let elastic = elastic_part(&whole, plastic_inverse);
+    let dashpots = dashpots.map(|term| term.map(f64::from));
+    let (own, energy) = viscous_stress(material.elasticity, &material.prony, &elastic, &dashpots);
+    let soft = plastic_stiffness_factor::<D>(plastic_inverse);
+    state.energy += soft * energy * volume;
+    let squash = whole[0].dot(cofactor(&whole)[0]);
+    for i in 0..3 {
+        for j in 0..3 {
+            // Row j of F G = Fₑ, so that P Fᵀ = s Pₑ Gᵀ Fᵀ = s Pₑ Fₑᵀ.
+            state.stress[i][j] += soft * own[i].dot(elastic[j]) / squash;
+        }
     }
 }
 
@@ -145,20 +177,26 @@ impl<D: Dim> SoftBody<D> {
         let element = self.topology.mesh.element(id)?;
         let at = |&node: &NodeId| self.state.position[node].xyz().as_dvec3();
         let positions: Vec<DVec3> = element.nodes.iter().map(at).collect();
-        let mut elasticity = self.material(element).elasticity;
-        elasticity.young *= self.topology.stiffness_scale;
+        let mut material = *self.material(element);
+        material.elasticity.young *= self.topology.stiffness_scale;
         let size = f64::from(self.topology.grid.voxel_size()) * f64::from(element.cell.width());
         let element_class = self.topology.mesh.element_class(element);
         let law = self.state.batches.law();
         let plastic_inverse = self.plastic_inverse(id);
-        Some(element_state_plastic(
+        let mut state = element_state_plastic(
             law,
-            elasticity,
+            ElasticLaw::from(&material),
             &plastic_inverse,
             element_class,
             size,
             &positions,
-        ))
+        );
+        if law == Law::CorotationalVem && material.is_viscous() {
+            let dashpots = self.state.batches.internal_state(id)?.dashpots;
+            let volume = volume_of(element_class, 0.5 * size);
+            add_viscous_part::<D>(&mut state, &material, &plastic_inverse, &dashpots, volume);
+        }
+        Some(state)
     }
 
     /// Plastic inverse G of an element, by rows; the identity if the material is elastic.
@@ -229,9 +267,9 @@ impl<D: Dim> SoftBody<D> {
 mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3};
-    use crate::material::Material;
     use crate::math::rotation::Rotation;
     use crate::soft_body::element_law::forces;
+    use crate::soft_body::hyperelasticity::StressLaw;
     use crate::soft_body::rayleigh::Damping;
     use crate::topology::grid::VoxelGrid;
     use glam::{Vec2, Vec3};
@@ -252,9 +290,13 @@ mod tests {
         body
     }
 
-    fn check_slope<D: Dim>(law: Law) {
+    fn check_slope<D: Dim>(law: Law, stress_law: StressLaw) {
         let body = crooked::<D>(0.1);
         let elasticity = Material::default().elasticity;
+        let elastic = ElasticLaw {
+            elasticity,
+            stress_law,
+        };
         let size = f64::from(body.grid().voxel_size());
         for (_, element) in body.mesh().elements().step_by(7) {
             let element_class = body.mesh().element_class(element);
@@ -262,9 +304,9 @@ mod tests {
             let at = |&node: &NodeId| body.node_state(node).0.to_vec3().as_dvec3();
             let positions: Vec<DVec3> = element.nodes.iter().map(at).collect();
             let energy = |positions: &[DVec3]| {
-                element_state(law, elasticity, element_class, size, positions).energy
+                element_state(law, elastic, element_class, size, positions).energy
             };
-            let forces = forces(law, elasticity, element_class, size, &positions);
+            let forces = forces(law, elastic, element_class, size, &positions);
             let most = forces
                 .iter()
                 .flat_map(|force| force.to_array())
@@ -290,9 +332,18 @@ mod tests {
 
     #[test]
     fn forces_match_energy_gradient() {
-        for law in [Law::CorotationalVem, Law::Endo2004] {
-            check_slope::<Dim2>(law);
-            check_slope::<Dim3>(law);
+        let yeoh = StressLaw::Yeoh {
+            second: 0.1,
+            third: 0.01,
+        };
+        for (law, stress_law) in [
+            (Law::CorotationalVem, StressLaw::Corotational),
+            (Law::Endo2004, StressLaw::Corotational),
+            (Law::CorotationalVem, StressLaw::NeoHookean),
+            (Law::CorotationalVem, yeoh),
+        ] {
+            check_slope::<Dim2>(law, stress_law);
+            check_slope::<Dim3>(law, stress_law);
         }
     }
 
@@ -308,8 +359,7 @@ mod tests {
             body.set_node_state(id, at, D::Vector::ZERO).unwrap();
         }
         let body = body.rotated_about(Rotation::in_plane(1.0), D::Vector::ZERO);
-        let Elasticity { young, poisson } = Material::default().elasticity;
-        let elasticity = Elasticity { young, poisson };
+        let elasticity = Material::default().elasticity;
         let along = (2.0 * elasticity.shear_modulus() + elasticity.lame()) * 0.05;
         let size = f64::from(body.grid().voxel_size());
         let voxel = (0..D::N).fold(1.0, |volume, _| volume * size);

@@ -71,7 +71,7 @@ impl<D: Dim> SoftBody<D> {
             found.map_or(ahead, |(_, rows)| rows)
         };
         let positions: Vec<&[Row]> = leads.iter().map(of_lead).collect();
-        self.state.batches.evaluate(&positions);
+        self.state.batches.evaluate(&positions, duration);
     }
 
     /// Adds to velocities the change that an acceleration field [m/s²] causes in `duration` [s].

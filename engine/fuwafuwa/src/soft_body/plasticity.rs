@@ -22,8 +22,8 @@
 
 use crate::foundation::dim::Dim;
 use crate::soft_body::element_law::{
-    Elasticity, IDENTITY, MIN_VOLUME_RATIO, Matrix, deformation_of, forces_of_stress, rotation_of,
-    stress,
+    ElasticLaw, Elasticity, IDENTITY, MIN_VOLUME_RATIO, Matrix, deformation_of, forces_of_stress,
+    rotation_of, stress,
 };
 use crate::topology::element_class::ElementClass;
 use glam::DVec3;
@@ -71,11 +71,11 @@ pub fn elastic_part(deformation: &Matrix, plastic_inverse: &Matrix) -> Matrix {
 
 /// Returns the first Piola–Kirchhoff stress [Pa] of a deformation gradient with a plastic inverse.
 pub fn stress_after<D: Dim>(
-    elasticity: Elasticity,
+    elastic: ElasticLaw,
     deformation: &Matrix,
     plastic_inverse: &Matrix,
 ) -> Matrix {
-    let own = stress(elasticity, &elastic_part(deformation, plastic_inverse));
+    let own = stress(elastic, &elastic_part(deformation, plastic_inverse));
     let soft = plastic_stiffness_factor::<D>(plastic_inverse);
     let mut total = [DVec3::ZERO; 3];
     for i in 0..3 {
@@ -105,7 +105,7 @@ pub fn forces_after<D: Dim>(
         "the number of positions must match the nodes of the element class"
     );
     let (deformation, _) = deformation_of(element_class, size, positions);
-    let stress = stress_after::<D>(elasticity, &deformation, plastic_inverse);
+    let stress = stress_after::<D>(elasticity.into(), &deformation, plastic_inverse);
     forces_of_stress(elasticity, &stress, element_class, size, positions)
 }
 
@@ -304,7 +304,7 @@ mod tests {
             .for_each(|_| plastic_inverse = flow::<Dim3>(CLAY, soft(), &sheared, &plastic_inverse));
         let elasticity = Elasticity::new(5000.0, 0.3).unwrap();
         let other = [[0.9, -0.2, 0.3], [0.1, 1.2, 0.0], [-0.2, 0.1, 1.1]].map(DVec3::from);
-        let stress = stress_after::<Dim3>(elasticity, &other, &plastic_inverse);
+        let stress = stress_after::<Dim3>(elasticity.into(), &other, &plastic_inverse);
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
             let spin = stress[i].dot(other[j]) - stress[j].dot(other[i]);
             assert!(spin.abs() < 1e-7 * elasticity.young, "{spin}");

@@ -149,7 +149,7 @@ impl<D: Dim> SoftBody<D> {
         } else {
             0.0
         };
-        let scale = self.topology.stiffness_scale.sqrt() / slowdown;
+        let scale = self.topology.stiffness_scale.sqrt() / slowdown * self.state.stiffening.speed();
         let size = f64::from(self.topology.grid.voxel_size());
         let acting = move |material: &Material| {
             let fastest = material.breathing_speed(D::N) * scale / size;

@@ -5,13 +5,12 @@ use crate::foundation::disjoint_sets::DisjointSets;
 use crate::foundation::id_lists::ascending;
 use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::soft_body::SoftBody;
-use crate::soft_body::element_forces::Row;
+use crate::soft_body::element_forces::{InternalState, Row};
 use crate::soft_body::momentum::{Momentum, RigidMotion, centre_of};
 use crate::topology::cell_hierarchy::Grading;
 use crate::topology::changes::Changes;
 use crate::topology::mesh::{Inheritance, Remodelled};
 use glam::DVec3;
-use glam::Vec3;
 
 impl<D: Dim> SoftBody<D> {
     /// Splits shared nodes. Each entry of `at` is a lattice point and a mask of octants: the voxels in these
@@ -141,13 +140,13 @@ impl<D: Dim> SoftBody<D> {
             self.topology.pieces.adopt(id, &element.nodes);
             self.cache.exposed_faces.edit()[id] = 0;
         }
-        let plastic_inverses = self.plastic_inverses_of(remodelled, &new);
+        let internal_states = self.internal_states_of(remodelled, &new);
         let (batches, pieces) = (&mut self.state.batches, &self.topology.pieces);
         let asleep = |id: ElementId| pieces.list[pieces.of_element(id)].asleep;
         let (mesh, grid) = (&self.topology.mesh, &self.topology.grid);
         batches.update(mesh, grid, removed, changed_elements, asleep);
-        for (id, plastic_inverse) in plastic_inverses {
-            batches.set_plastic_inverse(id, plastic_inverse);
+        for (id, state) in internal_states {
+            batches.set_internal_state(id, state);
         }
         self.reset_rotations(&new);
         let changed_elements = changed_elements
@@ -169,15 +168,15 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Returns the plastic inverse of each new element, taken from the removed element that contained its
-    /// first voxel.
-    fn plastic_inverses_of(
+    /// Returns the internal state of each new element, taken from the removed element that contained its first
+    /// voxel.
+    fn internal_states_of(
         &self,
         remodelled: &Remodelled,
         new: &[ElementId],
-    ) -> Vec<(ElementId, [Vec3; 3])> {
+    ) -> Vec<(ElementId, InternalState)> {
         let batches = &self.state.batches;
-        if !batches.has_plastic() {
+        if !batches.has_internal_state() {
             return Vec::new();
         }
         let of = |&id: &ElementId| {
@@ -186,7 +185,7 @@ impl<D: Dim> SoftBody<D> {
                 .mesh
                 .first_voxel(self.topology.mesh.element(id)?);
             let origin = remodelled.origin::<D>(voxel)?;
-            Some((id, batches.plastic_inverse(origin)?))
+            Some((id, batches.internal_state(origin)?))
         };
         new.iter().filter_map(of).collect()
     }

@@ -95,7 +95,7 @@ fn body_error_names_material_and_field() {
     let error = SoftBody::new(grid(), &[squashy, soft]);
     assert_eq!(
         error.map(|_| ()).unwrap_err().to_string(),
-        "material 1: poisson must be 0 to 0.45, given 0.5"
+        "material 1: poisson must be 0 to 0.49, given 0.5"
     );
 }
 

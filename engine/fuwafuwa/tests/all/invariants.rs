@@ -182,7 +182,7 @@ fn assert_uniform_strain_leaves_inner_nodes_at_rest<D: Dim>(
         let size = f64::from(element.cell.width());
         let all = forces(
             Law::CorotationalVem,
-            elasticity,
+            elasticity.into(),
             mesh.element_class(element),
             size,
             &positions,

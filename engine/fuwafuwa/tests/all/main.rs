@@ -29,6 +29,7 @@ mod snapshots;
 #[cfg(feature = "serde")]
 mod state_hash;
 mod stiff_bodies;
+mod stress_laws;
 mod ticks;
 mod vectors;
 mod world;

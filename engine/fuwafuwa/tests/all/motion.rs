@@ -71,7 +71,7 @@ fn check_forces_against_the_law<D: Dim>(law: Law) {
         let size = f64::from(element.cell.width()) / 16.0;
         let all = forces(
             law,
-            Material::default().elasticity,
+            Material::default().elasticity.into(),
             body.mesh().element_class(element),
             size,
             &positions,

@@ -110,7 +110,7 @@ fn laws_reproduce_youngs_modulus_on_cube() {
             .collect();
         let ideal = 2000.0 * strain * (1..D::N).fold(1.0, |area, _| area * size);
         for law in [Law::Endo2004, Law::CorotationalVem] {
-            let all = forces(law, elasticity, &element_class, size, &positions);
+            let all = forces(law, elasticity.into(), &element_class, size, &positions);
             let pull: f64 = all
                 .iter()
                 .zip(&element_class.offsets)
@@ -135,7 +135,13 @@ fn paper_law_pulls_swapped_nodes_back() {
     let elasticity = Elasticity::new(1000.0, 0.0).unwrap();
     let mut positions = element_class.offsets.clone();
     positions.swap(0, 1);
-    let all = forces(Law::Endo2004, elasticity, &element_class, 2.0, &positions);
+    let all = forces(
+        Law::Endo2004,
+        elasticity.into(),
+        &element_class,
+        2.0,
+        &positions,
+    );
     let home = |k: usize| element_class.offsets[k][0] - positions[k][0];
     assert!(
         all[0][0] * home(0) > 0.0 && all[1][0] * home(1) > 0.0,

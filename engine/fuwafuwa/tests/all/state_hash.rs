@@ -10,7 +10,8 @@ use fuwafuwa::inspect::Hash;
 use fuwafuwa::snapshot::{load, save};
 use fuwafuwa::{
     Damping, Dim, Dim2, Dim3, DimVector, Joint, JointAnchor, JointKind, Knife, Layers, Material,
-    RigidBody, Rotation, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig,
+    PronyTerm, RigidBody, Rotation, Shape, SoftBody, StressLaw, Vec3, VoxelGrid, World,
+    WorldConfig,
 };
 use serde::de::value::Error;
 use serde::{Serialize, Serializer, ser};
@@ -438,8 +439,16 @@ fn world_of_everything<D: Blades>(n: usize) -> World<D> {
         let body = SoftBody::new(VoxelGrid::cube(n, 0.4).unwrap(), &[material]).unwrap();
         body.translated(at)
     };
+    let rubber = Material {
+        stress_law: StressLaw::Yeoh {
+            second: 0.1,
+            third: 0.01,
+        },
+        ..Material::default()
+    };
     let plastic = Material {
         yield_strain: 0.02,
+        prony: [PronyTerm::new(0.5, 0.2), PronyTerm::NONE],
         strength: 300.0,
         // Calms the cube after its fall, so that no crack grows before rigid bodies press on each other.
         damping: Damping {
@@ -459,7 +468,7 @@ fn world_of_everything<D: Blades>(n: usize) -> World<D> {
         .add_soft_body(soft(1, vector(0.1, 0.45, 0.0), Material::default()))
         .unwrap();
     let gone = world
-        .add_soft_body(soft(1, vector(9.0, 0.0, 0.0), Material::default()))
+        .add_soft_body(soft(1, vector(9.0, 0.0, 0.0), rubber))
         .unwrap();
     let ghost = Layers {
         memberships: 1,
@@ -538,7 +547,7 @@ const COVERED: [&str; 15] = [
     "bodies.slots.item.state.damage",
     "bodies.slots.item.state.cooldowns.points",
     "bodies.slots.item.state.tip_deviations.at",
-    "bodies.slots.item.state.batches.plastic_inverses",
+    "bodies.slots.item.state.batches.internal_states",
     "bodies.slots.item.topology.mesh.free_nodes",
     "events.ContactForce.point",
     "touching",

@@ -5,7 +5,7 @@ use super::shapes::{BallText, BoxText, CapsuleText, HalfSpaceText};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::{Damping, Layers, Material};
+use fuwafuwa::{Damping, Layers, Material, PronyTerm, StressLaw};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -15,8 +15,15 @@ use std::collections::BTreeMap;
 pub struct MaterialText {
     /// Young's modulus [Pa].
     pub young: Option<f64>,
-    /// Poisson ratio.
+    /// Poisson's ratio, 0 to 0.49.
     pub poisson: Option<f64>,
+    /// Relation between stress and large strain: `"corotational"` (default), `"neo_hookean"`, or
+    /// `{ yeoh = [C₂ / C₁, C₃ / C₁] }`.
+    pub stress_law: Option<StressLawText>,
+    /// Viscoelasticity: up to two terms of a Prony series, each as [ratio to the shear modulus at rest, relaxation
+    /// time in s].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub prony: Vec<[f32; 2]>,
     /// Density [kg/m³].
     pub density: Option<f32>,
     /// Mass damping [1/s]: damps slow vibrations most.
@@ -46,6 +53,38 @@ pub struct MaterialText {
     /// decides by the material number. A material that differs from an earlier one only in its colour is a
     /// tint: it does not affect the simulation.
     pub colour: Option<[u8; 3]>,
+}
+
+/// Relation between stress and large strain of a material; see [`StressLaw`].
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StressLawText {
+    /// Stress in proportion to the strain.
+    Corotational,
+    /// Neo-Hookean law.
+    NeoHookean,
+    /// Law of Yeoh: C₂ / C₁ and C₃ / C₁.
+    Yeoh([f64; 2]),
+}
+
+impl From<StressLawText> for StressLaw {
+    fn from(text: StressLawText) -> Self {
+        match text {
+            StressLawText::Corotational => Self::Corotational,
+            StressLawText::NeoHookean => Self::NeoHookean,
+            StressLawText::Yeoh([second, third]) => Self::Yeoh { second, third },
+        }
+    }
+}
+
+impl From<StressLaw> for StressLawText {
+    fn from(law: StressLaw) -> Self {
+        match law {
+            StressLaw::Corotational => Self::Corotational,
+            StressLaw::NeoHookean => Self::NeoHookean,
+            StressLaw::Yeoh { second, third } => Self::Yeoh([second, third]),
+        }
+    }
 }
 
 /// A `[[body]]` table. It requires exactly one of the fields `shape`, `file`, `voxels` and `state`.
@@ -239,6 +278,11 @@ impl MaterialText {
                 young: self.young.unwrap_or(usual.elasticity.young),
                 poisson: self.poisson.unwrap_or(usual.elasticity.poisson),
             },
+            stress_law: self.stress_law.map_or(usual.stress_law, StressLaw::from),
+            prony: [0, 1].map(|term: usize| {
+                let given = self.prony.get(term);
+                given.map_or(PronyTerm::NONE, |&[ratio, time]| PronyTerm { ratio, time })
+            }),
             density: self.density.unwrap_or(usual.density),
             damping: match self.damping {
                 Some(ratio) => Damping::at(ratio, 4.0),
@@ -266,6 +310,9 @@ impl MaterialText {
         Self {
             young: Some(young),
             poisson: Some(poisson),
+            stress_law: (material.stress_law != StressLaw::Corotational)
+                .then_some(material.stress_law.into()),
+            prony: prony_text(material),
             density: Some(material.density),
             mass_damping: Some(material.damping.mass),
             stiffness_damping: Some(material.damping.stiffness),
@@ -294,9 +341,22 @@ impl MaterialText {
             let reason = "excludes `mass_damping` and `stiffness_damping`";
             return Err(FieldError::new("damping", reason.to_owned()));
         }
+        if self.prony.len() > 2 {
+            let reason = format!("expected at most 2 terms, found {}", self.prony.len());
+            return Err(FieldError::new("prony", reason));
+        }
         let checked = self.material().check();
         checked.map_err(|error| FieldError::engine("young", error))
     }
+}
+
+/// Returns the terms of the Prony series of a material, up to the last one that has an effect.
+fn prony_text(material: &Material) -> Vec<[f32; 2]> {
+    let terms = material
+        .prony
+        .map(|PronyTerm { ratio, time }| [ratio, time]);
+    let last = terms.iter().rposition(|[ratio, _]| *ratio != 0.0);
+    terms[..last.map_or(0, |last| last + 1)].to_vec()
 }
 
 impl BodyText {

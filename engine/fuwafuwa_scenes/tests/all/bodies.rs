@@ -1,7 +1,7 @@
 //! Shapes and materials of bodies in scenes.
 
 use crate::picture::png_of;
-use fuwafuwa::{Dim, Dim2, Dim3, SoftBody, Vec2};
+use fuwafuwa::{Dim, Dim2, Dim3, PronyTerm, SoftBody, StressLaw, Vec2};
 use fuwafuwa_scenes::disk::open_scene;
 use fuwafuwa_scenes::{Recording, Scene, SceneError};
 use std::path::PathBuf;
@@ -263,4 +263,35 @@ fn model_in_scene_folder_becomes_body() {
         let error = with(fields).unwrap_err();
         assert!(error.ends_with(expected), "{error}\nlacks: {expected}");
     }
+}
+
+#[test]
+fn material_reads_and_writes_stress_law_and_prony_series() {
+    let text = "
+dim = 2
+[[material]]
+poisson = 0.49
+stress_law = { yeoh = [0.05, -0.001] }
+prony = [[0.5, 0.2], [1.0, 10.0]]
+[[material]]
+stress_law = \"neo_hookean\"
+[[body]]
+shape = \"ball\"
+n = 4
+";
+    let scene = Scene::read("toy.toml", text, &[]).unwrap();
+    let [yeoh, neo_hookean] = scene.materials()[..] else {
+        panic!("two materials")
+    };
+    let law = StressLaw::Yeoh {
+        second: 0.05,
+        third: -0.001,
+    };
+    assert_eq!(yeoh.stress_law, law);
+    let terms = [PronyTerm::new(0.5, 0.2), PronyTerm::new(1.0, 10.0)];
+    assert_eq!(yeoh.prony, terms);
+    assert_eq!(neo_hookean.stress_law, StressLaw::NeoHookean);
+    assert_eq!(neo_hookean.prony, [PronyTerm::NONE; 2]);
+    let again = Scene::read("toy.toml", &scene.text().unwrap(), &[]).unwrap();
+    assert_eq!(again.materials(), scene.materials());
 }

@@ -61,7 +61,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "young",
             "yuong",
-            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `density`, `mass_damping`, `stiffness_damping`, `damping`, `friction`, `rolling_resistance`, `strength`, `strength_scatter`, `toughness`, `yield_strain`, `plastic_limit`, `unbreakable`, `colour`",
+            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `stress_law`, `prony`, `density`, `mass_damping`, `stiffness_damping`, `damping`, `friction`, `rolling_resistance`, `strength`, `strength_scatter`, `toughness`, `yield_strain`, `plastic_limit`, `unbreakable`, `colour`",
         ),
         (
             "\"ball\"",
@@ -137,7 +137,27 @@ fn error_names_file_line_field_and_expectation() {
         (
             "young = 5000.0",
             "poisson = 0.5",
-            ", line 3: material 1, poisson: expected 0 to 0.45, found 0.5",
+            ", line 3: material 1, poisson: expected 0 to 0.49, found 0.5",
+        ),
+        (
+            "young = 5000.0",
+            "stress_law = { yeoh = [-0.1, 0.001] }",
+            ", line 3: material 1, second: expected 0 to 1e6, or negative with a square below 3 × third; positive if third is negative, found -0.1",
+        ),
+        (
+            "young = 5000.0",
+            "stress_law = \"neo_hookean\"\nyield_strain = 0.1",
+            ", line 4: material 1, yield_strain: expected infinite under a hyperelastic stress law, found 0.1",
+        ),
+        (
+            "young = 5000.0",
+            "prony = [[0.1, 1.0], [0.1, 1.0], [0.1, 1.0]]",
+            ", line 3: material 1, prony: expected at most 2 terms, found 3",
+        ),
+        (
+            "young = 5000.0",
+            "prony = [[0.1, 0.0]]",
+            ", line 3: material 1, prony: time: expected 0.001 to 1000 s, found 0.0",
         ),
         (
             "young = 5000.0",

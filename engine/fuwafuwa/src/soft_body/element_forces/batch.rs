@@ -1,10 +1,11 @@
 //! Batches of elements, and the evaluation of groups of batches in three loops: gradients, stresses, forces.
 
 use super::force_kernel::{
-    BatchView, Moduli, PerLane, Scratch, Uniform, forces, gradient, plain_forces, plain_gradient,
-    stress,
+    BatchView, PerLane, Scratch, Uniform, forces, gradient, plain_forces, plain_gradient, stress,
 };
-use super::plastic_kernel::{PlasticFlowLimits, PlasticInverseLanes, plastic_stress};
+use super::internal_state::InternalLanes;
+use super::material_constants::MaterialConstants;
+use super::stress_kernel::unusual_stress;
 use crate::foundation::dim::Dim;
 use crate::math::lanes::{Eight, LANES, on_widest_lanes};
 use crate::math::row::Row;
@@ -36,8 +37,8 @@ pub struct Batch {
     pub half_size: Eight,
     /// Rotation of the element in each lane: a quaternion in 3D, cosine and sine in 2D.
     pub rotation: [Eight; 4],
-    /// Plastic inverse of the element in each lane; `None` if the material is elastic.
-    pub plastic_inverse: Option<Box<PlasticInverseLanes>>,
+    /// Internal state of the element in each lane; `None` if the material has none.
+    pub internal: Option<Box<InternalLanes>>,
     pub node_count: u32,
     /// Index of the first node of the batch in `ElementBatches::nodes`. The forces of the batch begin at D::N
     /// times this index in `ElementBatches::forces`.
@@ -80,8 +81,10 @@ impl BatchKey {
 #[derive(Copy, Clone)]
 pub struct Shared<'a> {
     pub law: Law,
-    pub moduli: &'a [Moduli],
-    pub flows: &'a [Option<PlasticFlowLimits>],
+    /// Constants of each material, by material number − 1.
+    pub materials: &'a [MaterialConstants],
+    /// Length of the substep [s].
+    pub duration: f32,
     pub class_data: &'a [f32],
     pub pooled_class_data: &'a [Eight],
     pub nodes: &'a [u32],
@@ -184,35 +187,29 @@ pub fn evaluate_share<D: Dim, S: Simd>(
             if batch.is_idle() {
                 continue;
             }
-            let material = batch.key.material as usize - 1;
-            let moduli = &shared.moduli[material];
-            let Some(Some(flow)) = shared.flows.get(material) else {
+            let material = &shared.materials[batch.key.material as usize - 1];
+            if material.is_usual() {
                 let mut view = batch.view::<D>(&shared, all, first);
-                stress::<D, S>(simd, law, moduli, &mut view, scratch);
+                stress::<D, S>(simd, law, &material.moduli, &mut view, scratch);
                 continue;
-            };
-            let mut plastic_inverse = batch.plastic_inverse.take();
-            let mut view = batch.view::<D>(&shared, all, first);
-            match &mut plastic_inverse {
-                Some(plastic_inverse) => {
-                    plastic_stress::<D, S>(
-                        simd,
-                        (moduli, flow),
-                        &mut view,
-                        plastic_inverse,
-                        scratch,
-                    );
-                }
-                None => stress::<D, S>(simd, law, moduli, &mut view, scratch),
             }
-            batch.plastic_inverse = plastic_inverse;
+            let mut internal = batch.internal.take();
+            let mut view = batch.view::<D>(&shared, all, first);
+            unusual_stress::<D, S>(
+                simd,
+                (material, shared.duration),
+                &mut view,
+                internal.as_deref_mut(),
+                scratch,
+            );
+            batch.internal = internal;
         }
         for (batch, scratch) in batches.iter_mut().zip(&*scratch) {
             if batch.is_idle() {
                 continue;
             }
             let (key, class_data) = (batch.key, batch.class_data(&shared));
-            let moduli = &shared.moduli[key.material as usize - 1];
+            let moduli = &shared.materials[key.material as usize - 1].moduli;
             let view = &mut batch.view::<D>(&shared, all, first);
             match (key.kind, class_data) {
                 (BatchKind::Plain, _) => plain_forces::<D, S>(simd, moduli, view, scratch),

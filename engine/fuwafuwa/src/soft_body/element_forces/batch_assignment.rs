@@ -2,7 +2,7 @@
 
 use super::batch::{ALL_LANES, Batch, BatchKey, BatchKind, VACANT};
 use super::force_kernel::{class_data_len, class_data_per_node, symmetric};
-use super::plastic_kernel::{IDENTITY, PlasticInverse, PlasticInverseLanes};
+use super::internal_state::{InternalLanes, InternalState};
 use super::{ElementBatches, PAD};
 use crate::foundation::dim::Dim;
 use crate::foundation::id_lists::ascending;
@@ -112,7 +112,7 @@ impl<D: Dim> ElementBatches<D> {
         }
     }
 
-    /// Returns an element with its rotation and plastic inverse, ready to be added to a batch.
+    /// Returns an element with its rotation and internal state, ready to be added to a batch.
     fn pending<'a>(
         &self,
         id: ElementId,
@@ -126,7 +126,7 @@ impl<D: Dim> ElementBatches<D> {
             material,
             asleep,
             rotation: self.rotation_of(id),
-            plastic_inverse: self.plastic_inverse(id).unwrap_or(IDENTITY),
+            internal: self.internal_state(id).unwrap_or(InternalState::NONE),
         }
     }
 
@@ -260,9 +260,9 @@ impl<D: Dim> ElementBatches<D> {
     fn empty_batch(&mut self, key: BatchKey, count: u32) -> u32 {
         let kind = (count, key.is_pool());
         if let Some(index) = self.empty.get_mut(&kind).and_then(Vec::pop) {
-            let plastic_inverse = self.new_plastic_inverse(key);
+            let internal = self.new_internal(key);
             let batch = &mut self.batches[index as usize];
-            (batch.key, batch.plastic_inverse) = (key, plastic_inverse);
+            (batch.key, batch.internal) = (key, internal);
             return index;
         }
         let first = self.nodes.len() as u32;
@@ -274,10 +274,10 @@ impl<D: Dim> ElementBatches<D> {
             let length = self.pooled_class_data.len() + class_data_len::<D>(count as usize);
             self.pooled_class_data.edit().resize(length, [0.0; LANES]);
         }
-        let plastic_inverse = self.new_plastic_inverse(key);
+        let internal = self.new_internal(key);
         self.batches.push(Batch {
             key,
-            plastic_inverse,
+            internal,
             elements: [VACANT; LANES],
             vacant: ALL_LANES,
             inverted: 0,
@@ -291,10 +291,10 @@ impl<D: Dim> ElementBatches<D> {
         self.batches.len() as u32 - 1
     }
 
-    /// Returns plastic inverses without deformation for a new batch; `None` if the material is elastic.
-    fn new_plastic_inverse(&self, key: BatchKey) -> Option<Box<PlasticInverseLanes>> {
-        let flow = self.flows.get(key.material as usize - 1);
-        flow.copied().flatten().map(|_| PlasticInverseLanes::none())
+    /// Returns the internal state of a new batch; `None` if the material has none.
+    fn new_internal(&self, key: BatchKey) -> Option<Box<InternalLanes>> {
+        let material = self.materials.get(key.material as usize - 1)?;
+        material.has_internal_state().then(InternalLanes::none)
     }
 
     /// Returns the start in `self.class_data` of the data of an element class. Appends `class_data` if the
@@ -325,8 +325,8 @@ impl<D: Dim> ElementBatches<D> {
             for part in 0..4 {
                 batch.rotation[part][lane] = pending.rotation[part];
             }
-            if let Some(plastic_inverse) = &mut batch.plastic_inverse {
-                plastic_inverse.set(lane, pending.plastic_inverse);
+            if let Some(internal) = &mut batch.internal {
+                internal.set(lane, pending.internal);
             }
             for (place, &node) in pending.element.nodes.iter().enumerate() {
                 self.nodes.edit()[first + place * LANES + lane] = node.0;
@@ -369,7 +369,7 @@ struct PendingElement<'a> {
     material: u8,
     asleep: bool,
     rotation: [f32; 4],
-    plastic_inverse: PlasticInverse,
+    internal: InternalState,
 }
 
 /// Returns the data of an element class in single precision, in the order that the kernel reads.

@@ -387,20 +387,7 @@ pub(super) fn stress_of<D: Dim, S: Simd>(
     }
     let twice_shear = splat(simd, moduli.twice_shear);
     let pressure = splat(simd, moduli.lame) * stretch - twice_shear;
-    let mut cofactor = [[zero; 3]; 3];
-    // In 2D, the cofactors are the entries of `f` themselves, swapped and with changed signs.
-    if D::N == 2 {
-        cofactor[0] = [f[1][1], zero - f[1][0], zero];
-        cofactor[1] = [zero - f[0][1], f[0][0], zero];
-    } else {
-        for i in 0..3 {
-            let (a, b) = (f[(i + 1) % 3], f[(i + 2) % 3]);
-            for j in 0..3 {
-                let (k, l) = ((j + 1) % 3, (j + 2) % 3);
-                cofactor[i][j] = a[k] * b[l] - a[l] * b[k];
-            }
-        }
-    }
+    let cofactor = cofactor::<D, S>(zero, f);
     let mut squash = splat(simd, MIN_VOLUME_RATIO as f32);
     for j in 0..D::N {
         squash -= f[0][j] * cofactor[0][j];
@@ -414,6 +401,26 @@ pub(super) fn stress_of<D: Dim, S: Simd>(
         }
     }
     p
+}
+
+/// Returns the cofactor matrix; in 2D of the first two rows and columns.
+#[inline(always)]
+pub(super) fn cofactor<D: Dim, S: Simd>(zero: Lanes<S>, f: &Matrix<S>) -> Matrix<S> {
+    let mut cofactor = [[zero; 3]; 3];
+    // In 2D, the cofactors are the entries of `f` themselves, swapped and with changed signs.
+    if D::N == 2 {
+        cofactor[0] = [f[1][1], zero - f[1][0], zero];
+        cofactor[1] = [zero - f[0][1], f[0][0], zero];
+        return cofactor;
+    }
+    for i in 0..3 {
+        let (a, b) = (f[(i + 1) % 3], f[(i + 2) % 3]);
+        for j in 0..3 {
+            let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+            cofactor[i][j] = a[k] * b[l] - a[l] * b[k];
+        }
+    }
+    cofactor
 }
 
 /// Returns the index of the entry in row i and column j of a symmetric matrix of which only the upper

@@ -2,7 +2,7 @@
 //! same order.
 
 use super::batch::{Batch, VACANT};
-use super::plastic_kernel::IDENTITY;
+use super::internal_state::InternalState;
 use super::{ElementBatches, parts};
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::{Hash, HashState};
@@ -16,8 +16,7 @@ impl<D: Dim> HashState for ElementBatches<D> {
             batches,
             assigned,
             forces,
-            moduli: _,
-            flows: _,
+            materials: _,
             voxel_size: _,
             open: _,
             empty: _,
@@ -38,7 +37,7 @@ impl<D: Dim> HashState for ElementBatches<D> {
             let Batch {
                 inverted,
                 rotation,
-                plastic_inverse: _,
+                internal: _,
                 node_count,
                 key: _,
                 elements: _,
@@ -56,10 +55,7 @@ impl<D: Dim> HashState for ElementBatches<D> {
                 own.iter().for_each(|force| force.hash_state(hash));
             }
             (inverted >> lane & 1 == 1).hash_state(hash);
-            let plastic_inverse = self.plastic_inverse(id);
-            plastic_inverse
-                .filter(|plastic_inverse| *plastic_inverse != IDENTITY)
-                .hash_state(hash);
+            InternalState::hash_of(self.internal_state(id), hash);
         }
     }
 }

@@ -4,20 +4,10 @@
 use super::force_kernel::{BatchView, Moduli, Scratch, stress_of};
 use super::rotation_extraction::{Matrix, turn};
 use crate::foundation::dim::Dim;
-use crate::math::lanes::{Eight, LANES, Lanes, at_least, if_positive, load, splat};
+use crate::math::lanes::{Eight, Lanes, at_least, if_positive, load, splat};
 use crate::soft_body::element_law::MIN_VOLUME_RATIO;
 use crate::soft_body::plasticity::{MAX_FLOW, MIN_FLOW_VOLUME_RATIO, Plasticity};
 use fearless_simd::prelude::*;
-use glam::Vec3;
-
-/// Plastic inverse G of the element in each lane, by rows.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlasticInverseLanes(pub [[Eight; 3]; 3]);
-
-/// Rows of the plastic inverse G = Fₚ⁻¹ of one element; Fₚ is the plastic part of the deformation gradient.
-pub type PlasticInverse = [Vec3; 3];
-
-pub const IDENTITY: PlasticInverse = Vec3::AXES;
 
 /// Plastic flow limits of a material in single precision.
 #[derive(Copy, Clone, Debug)]
@@ -35,27 +25,6 @@ impl PlasticFlowLimits {
     }
 }
 
-impl PlasticInverseLanes {
-    /// Returns plastic inverses without deformation: the identity in each lane.
-    pub fn none() -> Box<Self> {
-        Box::new(Self(
-            IDENTITY.map(|row| row.to_array().map(|entry| [entry; LANES])),
-        ))
-    }
-
-    pub fn get(&self, lane: usize) -> PlasticInverse {
-        self.0.map(|row| row.map(|entry| entry[lane]).into())
-    }
-
-    pub fn set(&mut self, lane: usize, plastic_inverse: PlasticInverse) {
-        for (row, numbers) in self.0.iter_mut().zip(plastic_inverse) {
-            for (entry, number) in row.iter_mut().zip(numbers.to_array()) {
-                entry[lane] = number;
-            }
-        }
-    }
-}
-
 /// Second loop for plastic elements: computes the stress like that of elastic elements, then applies plastic
 /// flow. The loop is split into several functions that are not inlined, because a single function took
 /// minutes to compile with scalar lanes.
@@ -64,7 +33,7 @@ pub fn plastic_stress<D: Dim, S: Simd>(
     simd: S,
     material: (&Moduli, &PlasticFlowLimits),
     view: &mut BatchView,
-    plastic_inverse: &mut PlasticInverseLanes,
+    plastic_inverse: &mut [[Eight; 3]; 3],
     scratch: &mut Scratch,
 ) {
     simd.vectorize(
@@ -78,7 +47,7 @@ fn flow_on<D: Dim, S: Simd>(
     simd: S,
     (moduli, flow): (&Moduli, &PlasticFlowLimits),
     view: &mut BatchView,
-    plastic_inverse: &mut PlasticInverseLanes,
+    plastic_inverse: &mut [[Eight; 3]; 3],
     scratch: &mut Scratch,
 ) {
     let zero = splat(simd, 0.0);
@@ -86,7 +55,7 @@ fn flow_on<D: Dim, S: Simd>(
     for i in 0..D::N {
         for j in 0..D::N {
             f[i][j] = load(simd, &scratch.f[i][j]);
-            g[i][j] = load(simd, &plastic_inverse.0[i][j]);
+            g[i][j] = load(simd, &plastic_inverse[i][j]);
         }
     }
     let elastic = product::<D, S>(zero, &f, &g);
@@ -105,7 +74,7 @@ fn flow_on<D: Dim, S: Simd>(
     let next = plastic_flow_outlined::<D, S>(simd, (moduli, flow), &elastic, &rotation, &g);
     for i in 0..D::N {
         for j in 0..D::N {
-            next[i][j].store_array(&mut plastic_inverse.0[i][j]);
+            next[i][j].store_array(&mut plastic_inverse[i][j]);
         }
     }
 }
@@ -230,7 +199,7 @@ fn density<D: Dim, S: Simd>(
 /// Returns the stiffness factor 1 / λ_max(GᵀG) of elements with plastic inverse G. The largest eigenvalue
 /// λ_max is estimated from the trace and the norm of GᵀG.
 #[inline(always)]
-fn plastic_stiffness_factor<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
+pub(super) fn plastic_stiffness_factor<D: Dim, S: Simd>(simd: S, g: &Matrix<S>) -> Lanes<S> {
     let zero = splat(simd, 0.0);
     let (mut trace, mut norm) = (zero, zero);
     for i in 0..D::N {
@@ -270,7 +239,7 @@ fn inverse_root<D: Dim, S: Simd>(simd: S, of: Lanes<S>) -> Lanes<S> {
 }
 
 #[inline(always)]
-fn product<D: Dim, S: Simd>(zero: Lanes<S>, a: &Matrix<S>, b: &Matrix<S>) -> Matrix<S> {
+pub(super) fn product<D: Dim, S: Simd>(zero: Lanes<S>, a: &Matrix<S>, b: &Matrix<S>) -> Matrix<S> {
     let mut product = [[zero; 3]; 3];
     for i in 0..D::N {
         for j in 0..D::N {

@@ -2,12 +2,12 @@
 //! because the assignment of elements to batches does not change the result.
 
 use super::batch::VACANT;
-use super::plastic_kernel::{IDENTITY, PlasticInverse};
+use super::internal_state::{InternalState, PlasticInverse};
 use super::saved_states::SavedElementStates;
 use super::{ElementBatches, parts};
 use crate::foundation::dim::Dim;
 use crate::foundation::ids::ElementId;
-use crate::soft_body::plasticity::Plasticity;
+use crate::material::Material;
 use crate::topology::grid::VoxelGrid;
 use crate::topology::mesh::{Element, Mesh};
 use glam::Vec3;
@@ -15,48 +15,53 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 impl<D: Dim> ElementBatches<D> {
     /// Returns whether the state read from a file has the right number of entries for the elements of a mesh,
-    /// and valid plastic inverses. Rotations and forces may have any value, because pieces that become
+    /// and valid internal states. Rotations and forces may have any value, because pieces that become
     /// non-finite are quarantined after the tick.
     pub fn is_sound(&self, mesh: &Mesh<D>) -> bool {
         let numbers = |(_, element): (_, &Element)| parts::<D>() + element.nodes.len() * D::N;
         let numbers: usize = mesh.elements().map(numbers).sum();
         let fits = |saved: &SavedElementStates| {
-            let plastic_inverses = &saved.plastic_inverses;
-            let is_one = |(id, plastic_inverse): &(ElementId, PlasticInverse)| {
-                mesh.element(*id).is_some() && is_sound::<D>(plastic_inverse)
+            let states = &saved.internal_states;
+            let is_one = |(id, state): &(ElementId, InternalState)| {
+                let dashpots = state.dashpots.as_flattened().iter();
+                mesh.element(*id).is_some()
+                    && is_sound::<D>(&state.plastic_inverse)
+                    && dashpots.fold(0.0f32, |most, k| most.max(k.abs())) < 100.0
+                    && !state.dashpots.as_flattened().iter().any(|k| k.is_nan())
             };
             saved.inverted.len() == mesh.element_count()
                 && saved.numbers.len() == numbers
-                && plastic_inverses.is_sorted_by(|a, b| a.0 < b.0)
-                && plastic_inverses.iter().all(is_one)
+                && states.is_sorted_by(|a, b| a.0 < b.0)
+                && states.iter().all(is_one)
         };
         self.saved.as_ref().is_some_and(fits)
     }
 
     /// Puts the elements of a mesh into batches, and restores their state from the snapshot. `asleep` returns
-    /// whether an element sleeps. The caller must then call [`ElementBatches::set_elasticities`].
+    /// whether an element sleeps.
     pub fn restore(
         &mut self,
         mesh: &Mesh<D>,
         grid: &VoxelGrid<D>,
-        plasticities: &[Option<Plasticity>],
+        materials: &[Material],
+        stiffness_scale: f64,
         asleep: impl Fn(ElementId) -> bool,
     ) {
         let Some(SavedElementStates {
             law,
             numbers,
-            plastic_inverses,
+            internal_states,
             inverted,
         }) = self.saved.take()
         else {
             return;
         };
-        *self = Self::new(law, &[], grid.voxel_size());
-        self.set_plasticities(plasticities);
+        *self = Self::new(law, materials, grid.voxel_size());
+        self.set_materials(materials, stiffness_scale);
         let all: Vec<ElementId> = mesh.elements().map(|(id, _)| id).collect();
         self.update(mesh, grid, &[], &all, asleep);
-        for (id, plastic_inverse) in plastic_inverses {
-            self.set_plastic_inverse(id, plastic_inverse);
+        for (id, state) in internal_states {
+            self.set_internal_state(id, state);
         }
         let mut numbers = numbers.into_iter();
         for (&id, inverted) in all.iter().zip(inverted) {
@@ -79,12 +84,12 @@ impl<D: Dim> ElementBatches<D> {
 
     fn to_be_saved(&self) -> SavedElementStates {
         let known = self.assigned.ids();
-        let plastic_inverses = known.filter_map(|id| Some((id, self.plastic_inverse(id)?)));
+        let states = known.filter_map(|id| Some((id, self.internal_state(id)?)));
         let mut saved = SavedElementStates {
             law: self.law,
             numbers: Vec::new(),
-            plastic_inverses: plastic_inverses
-                .filter(|(_, plastic_inverse)| *plastic_inverse != IDENTITY)
+            internal_states: states
+                .filter(|(_, state)| *state != InternalState::NONE)
                 .collect(),
             inverted: Vec::new(),
         };
@@ -111,7 +116,7 @@ fn is_sound<D: Dim>(plastic_inverse: &PlasticInverse) -> bool {
     let volume = x.dot(y.cross(z));
     let is_flat = (D::N..3).all(|axis| {
         let column = Vec3::new(x[axis], y[axis], z[axis]);
-        plastic_inverse[axis] == IDENTITY[axis] && column == IDENTITY[axis]
+        plastic_inverse[axis] == Vec3::AXES[axis] && column == Vec3::AXES[axis]
     });
     let most = plastic_inverse
         .iter()

@@ -96,6 +96,20 @@ fn turn_in_space<S: Simd>(simd: S, f: &Matrix<S>, q: [Lanes<S>; 4]) -> [Lanes<S>
     ]
 }
 
+/// Returns the matrix of a stored rotation.
+#[inline(always)]
+pub fn rotation_matrix<D: Dim, S: Simd>(simd: S, rotation: &[Eight; 4]) -> Matrix<S> {
+    let mut parts = [splat(simd, 0.0); 4];
+    for part in 0..4 {
+        parts[part] = load(simd, &rotation[part]);
+    }
+    if D::N == 2 {
+        let (zero, [cosine, sine, ..]) = (splat(simd, 0.0), parts);
+        return [[cosine, zero - sine, zero], [sine, cosine, zero], [zero; 3]];
+    }
+    matrix_of(simd, parts)
+}
+
 /// Returns the rotation matrix of a unit quaternion (x, y, z, w).
 #[inline(always)]
 pub fn matrix_of<S: Simd>(simd: S, q: [Lanes<S>; 4]) -> Matrix<S> {

@@ -1,6 +1,6 @@
-//! State of the elements in a snapshot: rotation, last forces and plastic inverse of each element.
+//! State of the elements in a snapshot: rotation, last forces and internal state of each element.
 
-use super::plastic_kernel::PlasticInverse;
+use super::internal_state::InternalState;
 use crate::foundation::ids::ElementId;
 use crate::soft_body::element_law::Law;
 use serde::{Deserialize, Serialize};
@@ -12,8 +12,8 @@ pub struct SavedElementStates {
     /// For each element, the rotation (cosine and sine in 2D, a quaternion in 3D), then the forces on its
     /// nodes [N], in the order of the nodes.
     pub numbers: Vec<f32>,
-    /// Plastic inverses that differ from the identity, by ascending element id.
-    pub plastic_inverses: Vec<(ElementId, PlasticInverse)>,
+    /// Internal states other than [`InternalState::NONE`], by ascending element id.
+    pub internal_states: Vec<(ElementId, InternalState)>,
     /// For each element, whether its volume was negative in the last evaluation.
     pub inverted: Vec<bool>,
 }
