@@ -4,6 +4,7 @@
 //! fuwafuwa count --dim 3 --shape ball --n 16 32 64
 //! fuwafuwa figure all --out figures
 //! fuwafuwa check all
+//! fuwafuwa experiment all
 //! fuwafuwa run tear --film tear.gif
 //! fuwafuwa scan grey.nii.gz white.nii.gz --out brain.toml
 //! ```
@@ -13,6 +14,7 @@
 mod bench;
 mod check;
 mod count;
+mod experiment;
 mod figure;
 mod plot;
 mod replay;
@@ -39,6 +41,7 @@ enum Command {
     Count(count::Arguments),
     Figure(figure::Arguments),
     Check(check::Arguments),
+    Experiment(experiment::Arguments),
     Run(run::Arguments),
     Replay(replay::Arguments),
     Scan(scan::Arguments),
@@ -58,6 +61,7 @@ fn run(arguments: Arguments) -> Result<ExitCode> {
         Command::Count(arguments) => count::run(&arguments),
         Command::Figure(arguments) => figure::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Experiment(arguments) => experiment::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Scan(arguments) => scan::run(&arguments),

@@ -32,13 +32,46 @@ pub struct ReportFile {
     pub text: String,
 }
 
+/// Introduction of a report.
+#[derive(Copy, Clone, Debug)]
+pub struct Page {
+    /// Heading.
+    pub title: &'static str,
+    /// Text below the heading.
+    pub about: &'static str,
+    /// Word for a section.
+    pub kind: &'static str,
+}
+
+/// Writes a report whose Markdown file has the given path, or compares it with the files on the disk and prints the
+/// differences. Returns whether there are differences.
+///
+/// # Errors
+/// The path of the file at fault and the error of the system.
+pub fn report(
+    path: &Path,
+    page: &Page,
+    sections: &[Section],
+    is_complete: bool,
+    compare: bool,
+) -> Result<bool> {
+    let files = files(path, page, sections);
+    if !compare {
+        write(&files)?;
+        return Ok(false);
+    }
+    let differences = differences(&files, is_complete);
+    differences.iter().for_each(output::warn);
+    Ok(!differences.is_empty())
+}
+
 /// Returns the files of the report whose Markdown file has the given path.
-pub fn files(path: &Path, sections: &[Section]) -> Vec<ReportFile> {
+pub fn files(path: &Path, page: &Page, sections: &[Section]) -> Vec<ReportFile> {
     let folder = path.with_extension("");
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let mut files = vec![ReportFile {
         path: path.to_path_buf(),
-        text: markdown(&name, sections),
+        text: markdown(&name, page, sections),
     }];
     files.extend(sections.iter().map(|section| ReportFile {
         path: folder.join(format!("{}.svg", section.name)),
@@ -135,15 +168,11 @@ fn sections_of(text: &str) -> Vec<(&str, Vec<&str>)> {
     sections
 }
 
-fn markdown(folder: &str, sections: &[Section]) -> String {
-    let mut text = String::from(
-        "# Validation\n\n\
-         What `fuwafuwa check` measures, beside theory, published values, or a second way to compute. A program wrote this\n\
-         page: `cargo run --package fuwafuwa_cli -- check all --report docs/validation.md`. `cargo xtask test` compares\n\
-         the quick checks with new measurements.\n\n\
-         Pictures show measured points upon the curve of the reference. Where there is no curve, they show the deviation\n\
-         from the reference in units of its bound: all points must lie in the green band.\n\n\
-         | check | values | passed | for comparison |\n| --- | --- | --- | --- |\n",
+fn markdown(folder: &str, page: &Page, sections: &[Section]) -> String {
+    let Page { title, about, kind } = page;
+    let mut text = format!(
+        "# {title}\n\n{about}\n\n\
+         | {kind} | values | passed | for comparison |\n| --- | --- | --- | --- |\n",
     );
     for Section { name, findings, .. } in sections {
         let count = |pass| {
@@ -234,6 +263,12 @@ fn picture(findings: &Findings) -> String {
 mod tests {
     use super::*;
 
+    const PAGE: Page = Page {
+        title: "Validation",
+        about: "Checks.",
+        kind: "check",
+    };
+
     fn section(name: &str, value: f64) -> Section {
         let outcome = Outcome::near("twice two".into(), value, 4.0, 0.08);
         Section {
@@ -247,10 +282,10 @@ mod tests {
     fn changed_row_is_named_with_its_section() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("report.md");
-        let written = files(&path, &[section("product", 4.01)]);
+        let written = files(&path, &PAGE, &[section("product", 4.01)]);
         write(&written).unwrap();
         assert!(differences(&written, true).is_empty());
-        let found = differences(&files(&path, &[section("product", 4.02)]), true);
+        let found = differences(&files(&path, &PAGE, &[section("product", 4.02)]), true);
         assert!(
             found[0].contains("product: expected \"| 1 | twice two | 4.01 | 4 | ± 2 % | yes |\""),
             "{found:?}"
@@ -267,17 +302,18 @@ mod tests {
         let path = folder.path().join("report.md");
         write(&files(
             &path,
+            &PAGE,
             &[section("sum", 4.01), section("product", 4.01)],
         ))
         .unwrap();
-        let part = |value| files(&path, &[section("product", value)]);
+        let part = |value| files(&path, &PAGE, &[section("product", value)]);
         assert!(differences(&part(4.01), false).is_empty());
         let complete = differences(&part(4.01), true);
         let last = complete.last().unwrap();
         assert!(last.contains("\"sum\" belongs to no check"), "{complete:?}");
         // The changed row, and the picture.
         assert_eq!(differences(&part(4.02), false).len(), 2);
-        let other = files(&path, &[section("quotient", 4.01)]);
+        let other = files(&path, &PAGE, &[section("quotient", 4.01)]);
         let missing = differences(&other, false);
         assert!(
             missing[0].contains("\"quotient\" is missing"),
@@ -289,7 +325,7 @@ mod tests {
     fn unchanged_files_are_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("report.md");
-        let written = files(&path, &[section("product", 4.01)]);
+        let written = files(&path, &PAGE, &[section("product", 4.01)]);
         write(&written).unwrap();
         let time = |file: &ReportFile| fs::metadata(&file.path).unwrap().modified().unwrap();
         let before: Vec<_> = written.iter().map(time).collect();

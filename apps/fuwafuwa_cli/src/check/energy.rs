@@ -108,7 +108,13 @@ mod tests {
             )
         };
         let positions: Vec<DVec3> = stencil.offsets.iter().map(bent).collect();
-        let found = forces(Law::CorotationalVem, elasticity.into(), &stencil, size, &positions);
+        let found = forces(
+            Law::CorotationalVem,
+            elasticity.into(),
+            &stencil,
+            size,
+            &positions,
+        );
         for (node, axis) in (0..positions.len()).flat_map(|k| (0..D::N).map(move |i| (k, i))) {
             let at = |by: f64| {
                 let mut moved = positions.clone();

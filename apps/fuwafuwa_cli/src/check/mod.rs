@@ -1,47 +1,47 @@
 //! Checks of the mechanics against theory and reference solutions. The exit status is 1 if a check fails.
 
-mod bar;
+pub mod bar;
 mod beam;
 mod bounce;
 mod crack_path;
 mod damping;
 mod doughnut;
-mod elastica;
-mod energy;
+pub mod elastica;
+pub mod energy;
 mod far;
 mod free_fall;
-mod greenhill;
+pub mod greenhill;
 mod grid;
 mod heap;
 mod impact;
 mod knife;
 mod lefm;
 mod momentum;
-mod motion;
+pub mod motion;
 mod overlap;
-mod parallel;
+pub mod parallel;
 mod patch;
 mod path;
 mod period;
 mod pile;
-mod plate;
-mod random;
+pub mod plate;
+pub mod random;
 mod reaction;
-mod ring;
+pub mod ring;
 mod sag;
 mod scale;
-mod shooting;
+pub mod shooting;
 mod slope;
 mod slow;
-mod sphere;
+pub mod sphere;
 mod spin;
 mod stack;
-mod statics;
+pub mod statics;
 mod tear;
-mod turek_hron;
+pub mod turek_hron;
 
 use crate::report::{self, Findings, Outcome, Progress};
-use crate::validation::{self, Section};
+use crate::validation::{self, Page, Section};
 use anyhow::{Context, Result, ensure};
 use clap::ValueEnum;
 use std::collections::BTreeMap;
@@ -192,6 +192,17 @@ const LONG: [Which; 14] = [
     Which::Grid,
 ];
 
+/// Introduction of the report.
+const PAGE: Page = Page {
+    title: "Validation",
+    about: "What `fuwafuwa check` measures, beside theory, published values, or a second way to compute. A program wrote this\n\
+            page: `cargo run --package fuwafuwa_cli -- check all --report docs/validation.md`. `cargo xtask test` compares\n\
+            the quick checks with new measurements.\n\n\
+            Pictures show measured points upon the curve of the reference. Where there is no curve, they show the deviation\n\
+            from the reference in units of its bound: all points must lie in the green band.",
+    kind: "check",
+};
+
 type Check = fn(&Progress, Extent) -> Result<Findings>;
 
 /// All checks, in the order of their output.
@@ -247,13 +258,14 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     }
     let progress = Progress::new();
     let mut sections = Vec::new();
-    run_all(&checks, extent, &progress, |which, findings| {
+    let work = |index: usize| checks[index].1(&progress, extent);
+    run_all(checks.len(), work, &progress, |index, findings| {
         if !arguments.json {
             let table = report::outcome_table(&findings.outcomes);
             let gap = if sections.is_empty() { "" } else { "\n" };
             progress.suspend(|| output::print(&format!("{gap}{table}")))?;
         }
-        sections.push(which.section(findings));
+        sections.push(checks[index].0.section(findings));
         Ok(())
     })?;
     drop(progress);
@@ -267,15 +279,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     }
     let mut failed = outcomes().any(|outcome| outcome.pass == Some(false));
     if let Some(path) = &arguments.report {
-        let files = validation::files(path, &sections);
-        if arguments.compare {
-            let is_complete = arguments.which == Which::All;
-            let differences = validation::differences(&files, is_complete);
-            differences.iter().for_each(output::warn);
-            failed |= !differences.is_empty();
-        } else {
-            validation::write(&files)?;
-        }
+        let is_complete = arguments.which == Which::All;
+        failed |= validation::report(path, &PAGE, &sections, is_complete, arguments.compare)?;
     }
     Ok(ExitCode::from(u8::from(failed)))
 }
@@ -305,31 +310,31 @@ impl Which {
     }
 }
 
-/// Runs checks on all threads. `done` receives the findings of each check in the order of the checks, as soon as all
-/// checks before it are done. After an error, no further check begins.
-fn run_all(
-    checks: &[(Which, Check)],
-    extent: Extent,
+/// Runs `work` for each of `count` checks on all threads. `done` receives the index and the result of each check in the
+/// order of the checks, as soon as all checks before it are done. After an error, no further check begins.
+pub fn run_all<Found: Send>(
+    count: usize,
+    work: impl Fn(usize) -> Result<Found> + Sync,
     progress: &Progress,
-    mut done: impl FnMut(Which, Findings) -> Result<()>,
+    mut done: impl FnMut(usize, Found) -> Result<()>,
 ) -> Result<()> {
-    progress.expect(checks.len() as u64);
+    progress.expect(count as u64);
     let next = AtomicUsize::new(0);
     let (sender, receiver) = mpsc::channel();
     std::thread::scope(|scope| {
-        for _ in 0..parallel::threads().min(checks.len()) {
+        for _ in 0..parallel::threads().min(count) {
             let sender = sender.clone();
-            let next = &next;
+            let (next, work) = (&next, &work);
             scope.spawn(move || {
                 loop {
                     let index = next.fetch_add(1, Ordering::Relaxed);
-                    let Some((_, check)) = checks.get(index) else {
+                    if index >= count {
                         break;
-                    };
-                    let found = check(progress, extent);
+                    }
+                    let found = work(index);
                     progress.step();
                     if found.is_err() {
-                        next.store(checks.len(), Ordering::Relaxed);
+                        next.store(count, Ordering::Relaxed);
                     }
                     if sender.send((index, found)).is_err() {
                         break;
@@ -338,15 +343,15 @@ fn run_all(
             });
         }
         drop(sender);
-        let (mut waiting, mut count, mut result) = (BTreeMap::new(), 0, Ok(()));
+        let (mut waiting, mut finished, mut result) = (BTreeMap::new(), 0, Ok(()));
         for (index, found) in receiver {
             waiting.insert(index, found);
-            while let Some(found) = waiting.remove(&count) {
-                result = result.and_then(|()| done(checks[count].0, found?));
+            while let Some(found) = waiting.remove(&finished) {
+                result = result.and_then(|()| done(finished, found?));
                 if result.is_err() {
-                    next.store(checks.len(), Ordering::Relaxed);
+                    next.store(count, Ordering::Relaxed);
                 }
-                count += 1;
+                finished += 1;
             }
         }
         result

@@ -201,7 +201,13 @@ fn stiffness<D: Dim>(stencil: &ElementClass<D>, elasticity: Elasticity) -> Vec<f
     let pull = |column: usize, step: f64| {
         let mut positions = stencil.offsets.clone();
         positions[column / D::N][column % D::N] += step;
-        forces(Law::CorotationalVem, elasticity.into(), stencil, 2.0, &positions)
+        forces(
+            Law::CorotationalVem,
+            elasticity.into(),
+            stencil,
+            2.0,
+            &positions,
+        )
     };
     for column in 0..count {
         let (ahead, behind) = (pull(column, STEP), pull(column, -STEP));

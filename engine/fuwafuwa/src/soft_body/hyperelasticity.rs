@@ -73,7 +73,7 @@ impl StressLaw {
             return Ok(());
         };
         let is_valid = (-1e6..=1e6).contains(&third);
-        require(is_valid, "third", "-1e6 to 1e6", third)?;
+        require(is_valid, "stress_law.third", "-1e6 to 1e6", third)?;
         // g is positive for all strains.
         let is_valid = match second < 0.0 {
             true => second * second < 3.0 * third,
@@ -81,7 +81,7 @@ impl StressLaw {
         };
         let expected =
             "0 to 1e6, or negative with a square below 3 × third; positive if third is negative";
-        require(is_valid, "second", expected, second)
+        require(is_valid, "stress_law.second", expected, second)
     }
 }
 

@@ -63,9 +63,9 @@ impl PronyTerm {
     /// [`Error::InvalidParameter`] names the field that is out of range.
     pub(crate) fn check(self) -> Result<(), Error> {
         let is_valid = (0.0..=100.0).contains(&self.ratio);
-        require(is_valid, "ratio", "0 to 100", self.ratio)?;
+        require(is_valid, "prony.ratio", "0 to 100", self.ratio)?;
         let is_valid = (1e-3..=1e3).contains(&self.time);
-        require(is_valid, "time", "0.001 to 1000 s", self.time)
+        require(is_valid, "prony.time", "0.001 to 1000 s", self.time)
     }
 
     /// Returns the share of the strain by which the dashpot follows in `duration` [s].

@@ -142,7 +142,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "young = 5000.0",
             "stress_law = { yeoh = [-0.1, 0.001] }",
-            ", line 3: material 1, second: expected 0 to 1e6, or negative with a square below 3 × third; positive if third is negative, found -0.1",
+            ", line 3: material 1, stress_law, second: expected 0 to 1e6, or negative with a square below 3 × third; positive if third is negative, found -0.1",
         ),
         (
             "young = 5000.0",
@@ -157,7 +157,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "young = 5000.0",
             "prony = [[0.1, 0.0]]",
-            ", line 3: material 1, prony: time: expected 0.001 to 1000 s, found 0.0",
+            ", line 3: material 1, prony, time: expected 0.001 to 1000 s, found 0.0",
         ),
         (
             "young = 5000.0",
