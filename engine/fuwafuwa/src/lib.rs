@@ -76,6 +76,7 @@ pub use foundation::dim::{Dim, Dim2, Dim3, DimAngular, DimVector, Point};
 pub use foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 pub use fracture::blade::{Blade, CutReport};
 pub use fracture::knife::{Knife, KnifeRef};
+pub use fracture::strength::{RateToughening, StrengthCriterion};
 pub use glam;
 pub use glam::{Vec2, Vec3};
 pub use material::Material;

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, require};
 use crate::foundation::hash::{Hash, HashState};
+use crate::fracture::strength::{RateToughening, StrengthCriterion};
 use crate::soft_body::element_law::Elasticity;
 use crate::soft_body::hyperelasticity::StressLaw;
 use crate::soft_body::plasticity::Plasticity;
@@ -43,6 +44,9 @@ pub struct Material {
     /// 8 voxels in 2D or 4 in 3D, the mean is extrapolated, to at least 1/64 and at most 64 voxels. A crack that is
     /// short compared with this radius grows at the strength, too. Elements with all nodes fixed do not count.
     pub strength: f32,
+    /// Criterion by which stress in several directions counts against the strength; default
+    /// [`StrengthCriterion::GreatestTension`].
+    pub strength_criterion: StrengthCriterion,
     /// Scatter of the strength, 0 to 10, default 0.4: at each lattice point of a smooth surface, the strength is
     /// raised by a fixed pseudo-random share of 0 to this value. With 0, a row of equally loaded points fails
     /// at once.
@@ -56,6 +60,8 @@ pub struct Material {
     /// Rule of thumb, with toughness in Pa √m and strength in Pa: at toughness = 0.15 strength, a crack that
     /// has started keeps running; at toughness = 0.4 strength, cracks stop near the surface.
     pub toughness: f32,
+    /// Growth of the fracture energy with the speed of a crack or of a cutting edge; default none.
+    pub rate_toughening: RateToughening,
     /// Yield strain; infinite (default) = purely elastic, like rubber. Strain beyond the yield strain becomes
     /// permanent; volume is preserved.
     ///
@@ -70,8 +76,8 @@ pub struct Material {
 }
 
 impl HashState for Material {
-    /// Stress law and Prony series are hashed only if they differ from the default, so that the hashes of worlds
-    /// without them are those of earlier versions.
+    /// Laws that are younger than the others are hashed only if they differ from the default, so that the hashes of
+    /// worlds without them are those of earlier versions.
     fn hash_state(&self, hash: &mut Hash) {
         let Self {
             elasticity,
@@ -82,8 +88,10 @@ impl HashState for Material {
             friction,
             rolling_resistance,
             strength,
+            strength_criterion,
             strength_scatter,
             toughness,
+            rate_toughening,
             yield_strain,
             plastic_limit,
         } = self;
@@ -103,6 +111,12 @@ impl HashState for Material {
         }
         if *stress_law != StressLaw::Corotational {
             stress_law.hash_state(hash);
+        }
+        if *strength_criterion != StrengthCriterion::GreatestTension {
+            strength_criterion.hash_state(hash);
+        }
+        if *rate_toughening != RateToughening::NONE {
+            rate_toughening.hash_state(hash);
         }
         if *prony != [PronyTerm::NONE; 2] {
             prony.iter().for_each(|term| term.hash_state(hash));
@@ -127,8 +141,10 @@ impl Default for Material {
             friction: 0.4,
             rolling_resistance: 20.0,
             strength: 1000.0,
+            strength_criterion: StrengthCriterion::GreatestTension,
             strength_scatter: 0.4,
             toughness: 150.0,
+            rate_toughening: RateToughening::NONE,
             yield_strain: f32::INFINITY,
             plastic_limit: 2.0,
         }
@@ -163,7 +179,9 @@ impl Material {
             10.0,
             "0 to 10",
         )?;
+        self.strength_criterion.check(self.strength)?;
         within("toughness", self.toughness, tiny, infinite, "positive")?;
+        self.rate_toughening.check()?;
         within(
             "yield_strain",
             self.yield_strain,
@@ -220,6 +238,11 @@ impl Material {
         })
     }
 
+    /// Returns whether cracks can start away from surfaces.
+    pub(crate) fn cracks_inside(&self) -> bool {
+        self.strength_criterion != StrengthCriterion::GreatestTension
+    }
+
     /// Returns whether the material is viscoelastic.
     pub(crate) fn is_viscous(&self) -> bool {
         self.prony.iter().any(|term| term.ratio > 0.0)
@@ -240,6 +263,12 @@ impl Material {
             .iter()
             .map(|term| f64::from(term.ratio) * libm::exp(-time.max(0.0) / f64::from(term.time)));
         1.0 + terms.sum::<f64>()
+    }
+
+    /// Fracture energy per area [J/m²] of a crack that grows at `speed` [m/s]: the
+    /// [fracture energy](Self::fracture_energy), raised by the [rate toughening](Self::rate_toughening).
+    pub fn fracture_energy_at(&self, speed: f32) -> f32 {
+        self.fracture_energy() * self.rate_toughening.factor(speed)
     }
 
     /// Speed of a pressure wave [m/s]: √((λ + 2µ) / ρ), with Lamé's parameters λ and µ of fast motion and the

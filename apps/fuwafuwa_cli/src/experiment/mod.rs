@@ -3,6 +3,9 @@
 //! Each experiment is a module with a function that returns its [`Record`]. A row of a record is a calibration, which
 //! fits one constant to one measured value, or a prediction, which uses that constant; see [`Role`].
 
+mod fracture;
+mod pull;
+
 use crate::check::{self, run_all};
 use crate::plot::Plot;
 use crate::report::{self, Findings, Outcome, Progress, digits};
@@ -44,6 +47,9 @@ enum Which {
     /// An elastic bar behind a cylinder bends and oscillates. Reference: the cases CSM1 to CSM3 of Turek and Hron (2006),
     /// finite elements.
     TurekHron,
+    /// Cracks begin to grow in a strip in pure shear, a notched bar and a double cantilever beam. Reference: energy release
+    /// and stress intensity of the challenge set of Kamarei, Zeng, Dolbow and Lopez-Pamies (2026).
+    Fracture,
     /// The experiments that take some seconds each.
     Quick,
     /// All experiments.
@@ -51,18 +57,19 @@ enum Which {
 }
 
 /// Experiments that take more than some five seconds on two cores, which [`Which::Quick`] leaves out.
-const LONG: [Which; 0] = [];
+const LONG: [Which; 1] = [Which::Fracture];
 
 type Experiment = fn(&Progress) -> Result<Record>;
 
 /// All experiments, in the order of their output.
-const EXPERIMENTS: [(Which, Experiment); 2] = [
+const EXPERIMENTS: [(Which, Experiment); 3] = [
     (Which::Elastica, |progress| {
         of_check(check::elastica::check, 4, progress)
     }),
     (Which::TurekHron, |progress| {
         of_check(check::turek_hron::check, 8, progress)
     }),
+    (Which::Fracture, fracture::run),
 ];
 
 /// Introduction of the report.

@@ -1,6 +1,7 @@
 //! Nodes at which a crack can start or grow, and the possible cuts there.
 //!
-//! A *breakable node* is shared by several voxels at an open point. Closed faces connect these voxels. A
+//! A *breakable node* is shared by several voxels at an open point, or at any point of a material in which cracks start
+//! inside ([`StrengthCriterion::DruckerPrager`]). Closed faces connect these voxels. A
 //! *cut* opens some of the closed faces across one axis, so that the voxels are divided into two sides.
 //!
 //! ```text
@@ -11,6 +12,8 @@
 
 use crate::foundation::dim::{Dim, FAR, Point, voxel_around};
 use crate::foundation::ids::{Id, IndexVec, NodeId};
+#[cfg(doc)]
+use crate::fracture::strength::StrengthCriterion;
 use crate::material::Material;
 use crate::topology::connectivity::{Connectivity, PointNeighbourhood};
 use crate::topology::grid::VoxelGrid;
@@ -30,6 +33,8 @@ pub struct BreakableNode {
     pub material: u8,
     /// Whether the node is a crack tip: some voxels that share it are separated by an open face.
     pub is_tip: bool,
+    /// Whether the node lies inside the body, away from surfaces and cracks.
+    pub is_inside: bool,
     /// Limit of the tension at the node [Pa]. At a smooth surface, the strength with its scatter: the limit of
     /// the mean tension. At a crack tip, toughness / √voxel size: a scale for the nodal tension, which is about
     /// as large when the crack begins to grow, and its limit under
@@ -99,15 +104,19 @@ impl BreakableNodes {
         materials: &[Material],
     ) {
         self.of_node.resize(mesh.node_capacity(), None);
+        let cracks_inside = materials.iter().any(Material::cracks_inside);
         for &id in nodes {
             let node = mesh.node(id);
             let several = node.group & node.group.wrapping_sub(1) != 0;
             self.of_node[id] = None;
             if several && mesh.is_alive(id) {
                 let around = connectivity.around(node.at);
-                if around.is_open() {
-                    let judged = self.judge(node, grid, &around, materials);
-                    self.of_node[id] = Some(judged);
+                let is_open = around.is_open();
+                if is_open || cracks_inside {
+                    let mut judged = self.judge(node, grid, &around, materials);
+                    judged.is_inside = !is_open;
+                    let material = &materials[judged.material as usize - 1];
+                    self.of_node[id] = (is_open || material.cracks_inside()).then_some(judged);
                 }
             }
         }
@@ -155,6 +164,7 @@ impl BreakableNodes {
             crumbs,
             material,
             is_tip,
+            is_inside: false,
             threshold,
             cuts,
         }

@@ -15,13 +15,16 @@
 //! [`nodal_tension`](super::nodal_tension) must pull the cut open. Under [`Law::Endo2004`], the nodal tension
 //! alone decides, as in the paper.
 //!
+//! In a material with the criterion of Drucker and Prager, a crack also starts inside, at a node of any element, and the
+//! mean equivalent tension takes the place of the mean tension.
+//!
 //! A node fails if it is overloaded for some milliseconds.
 
 use crate::foundation::dim::{Dim, Point};
 use crate::foundation::ids::NodeId;
 use crate::foundation::threads::{self, CHUNK_SIZE};
 use crate::fracture::breakable_nodes::{BreakableNode, NodeCut};
-use crate::fracture::near_field::NearField;
+use crate::fracture::near_field::{NearField, equivalent_tension};
 use crate::fracture::nodal_tension::{
     CutTension, NodalForces, crumb_factor, face_area, is_surely_below,
 };
@@ -47,6 +50,9 @@ pub struct Failure {
     pub excess: f32,
     /// Estimate of the released elastic energy [J].
     pub energy: f32,
+    /// Greatest speed of the crack [m/s], at which it dissipates the energy that it releases; infinite at a smooth
+    /// surface.
+    speed: f32,
     /// Advance of a crack tip; `None` at a smooth surface.
     advance: Option<Advance>,
 }
@@ -141,8 +147,9 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
             }
             // A fast test excludes most nodes: those far from failure.
             let least = least_tension(body, node);
-            let failure = match is_surely_below(simd, body, id, node, least) {
-                true => None,
+            let failure = match node.is_inside {
+                true => inside_failure(body, &mut near, id, node),
+                false if is_surely_below(simd, body, id, node, least) => None,
                 false => failure(body, &mut near, id, node, least),
             };
             let Some(failure) = failure else {
@@ -154,7 +161,8 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
             if failure.advance.is_some() {
                 over = over.max(MIN_TIP_OVERLOAD);
             }
-            *damage += duration / DAMAGE_TIME * 2.0 * over;
+            let growth = duration / DAMAGE_TIME * 2.0 * over;
+            *damage += growth.min(duration * failure.speed / size);
             if *damage >= 1.0 && !body.cooldowns().covers(failure.at) {
                 found.push(failure);
             }
@@ -261,28 +269,91 @@ fn surface_failure<D: Dim>(
     node: &BreakableNode,
     worst: CutTension,
 ) -> Option<Failure> {
-    let radius = strength_radius(material(body, node)) / body.grid().voxel_size();
-    let tension = tension_within(near, id, radius);
+    let tension = tension_at(body, near, id, node);
     let excess = tension / (node.threshold * crumb_factor(node, &worst.cut));
     (excess > 1.0).then(|| start(body, id, node, tension, excess, worst.cut))
 }
 
-/// Returns the mean tension [Pa] within `radius` [voxels] of a node. Below [`MIN_RADIUS`] and above [`MAX_RADIUS`], it
-/// is extrapolated.
-fn tension_within<D: Dim>(near: &mut NearField<D>, node: NodeId, radius: f32) -> f32 {
+/// Returns the failure of a node inside a body, if it is overloaded. The cut lies square to the greatest tension, as
+/// far as the voxels allow.
+fn inside_failure<D: Dim>(
+    body: &SoftBody<D>,
+    near: &mut NearField<D>,
+    id: NodeId,
+    node: &BreakableNode,
+) -> Option<Failure> {
+    let factor = pressure_factor(body, node);
+    let least = GATE * node.threshold;
+    let mut around = body.mesh().carrier_ids(id);
+    if !around.any(|element| near.tension_in(element, factor) > least) {
+        return None;
+    }
+    let tension = tension_at(body, near, id, node);
+    let excess = tension / node.threshold;
+    if excess <= 1.0 {
+        return None;
+    }
+    let stress = near.mean_stress(id, MIN_RADIUS)?;
+    let mut rotation = [Vec3::ZERO; 3];
+    for element in body.mesh().carrier_ids(id) {
+        let own = body.element_forces().rotation(element);
+        (0..3).for_each(|row| rotation[row] += own[row]);
+    }
+    let pull = |axis: u8| {
+        let [x, y, z] = rotation.map(|row| row[axis as usize]);
+        let normal = Vec3::new(x, y, z).normalize_or_zero();
+        normal.dot(stress.map(|row| row.dot(normal)).into())
+    };
+    let cuts = body.breakable_nodes().cuts(node).iter();
+    let whole = cuts.filter(|cut| usize::from(cut.faces) == D::CORNERS / 2);
+    let cut = whole.max_by(|a, b| pull(a.axis).total_cmp(&pull(b.axis)))?;
+    Some(start(body, id, node, tension, excess, *cut))
+}
+
+/// Returns the constant γ of the weakest material around a node, see [`StrengthCriterion::DruckerPrager`].
+fn pressure_factor<D: Dim>(body: &SoftBody<D>, node: &BreakableNode) -> Option<f32> {
+    let material = material(body, node);
+    material
+        .strength_criterion
+        .pressure_factor(material.strength)
+}
+
+/// Returns the mean tension [Pa] within the strength radius of a node.
+fn tension_at<D: Dim>(
+    body: &SoftBody<D>,
+    near: &mut NearField<D>,
+    id: NodeId,
+    node: &BreakableNode,
+) -> f32 {
+    let radius = strength_radius(material(body, node)) / body.grid().voxel_size();
+    tension_within(near, id, radius, pressure_factor(body, node))
+}
+
+/// Returns the mean equivalent tension [Pa] within `radius` [voxels] of a node. Below [`MIN_RADIUS`] and above
+/// [`MAX_RADIUS`], it is extrapolated.
+fn tension_within<D: Dim>(
+    near: &mut NearField<D>,
+    node: NodeId,
+    radius: f32,
+    pressure_factor: Option<f32>,
+) -> f32 {
     let most = MAX_RADIUS[D::N - 2];
     let known = radius.clamp(MIN_RADIUS, most);
-    let tension = near.mean_tension(node, known);
+    let mut mean_within = |radius: f32| {
+        let mean = near.mean_stress(node, radius);
+        mean.map_or(0.0, |mean| equivalent_tension::<D>(&mean, pressure_factor))
+    };
+    let tension = mean_within(known);
     if tension <= 0.0 || radius == known {
         return tension;
     }
     let [least, greatest] = EXTRAPOLATED;
     let radius = radius.clamp(least, greatest);
     if radius < known {
-        let slope = STEEPENING * slope(tension, near.mean_tension(node, 2.0 * known));
+        let slope = STEEPENING * slope(tension, mean_within(2.0 * known));
         return tension * libm::powf(known / radius, slope);
     }
-    let slope = slope(near.mean_tension(node, 0.5 * known), tension);
+    let slope = slope(mean_within(0.5 * known), tension);
     tension * libm::powf(known / radius, slope)
 }
 
@@ -320,6 +391,7 @@ fn start<D: Dim>(
         axis: cut.axis.into(),
         excess,
         energy: tension * tension / (2.0 * young) * volume,
+        speed: f32::INFINITY,
         advance: None,
     }
 }
@@ -348,7 +420,7 @@ fn tip_failure<D: Dim>(
     // A crack that is short compared with the strength radius does not weaken the body.
     let radius = strength_radius(material) / size;
     if excess < 1.0 && radius > MIN_RADIUS && radius.is_finite() {
-        excess = excess.max(tension_within(near, id, radius) / material.strength);
+        excess = excess.max(tension_at(body, near, id, node) / material.strength);
     }
     let excess = excess.min(open_excess);
     if excess <= 1.0 {
@@ -372,6 +444,7 @@ fn tip_failure<D: Dim>(
         axis: cut.axis.into(),
         excess,
         energy: rate * area,
+        speed: material.rate_toughening.speed_at(rate / resistance),
         advance: Some(Advance {
             to,
             direction,
@@ -528,6 +601,7 @@ mod tests {
             axis,
             excess: 2.0,
             energy: 0.0,
+            speed: f32::INFINITY,
             advance: None,
         };
         let worst = failure([8, 8, 8], 0);

@@ -14,10 +14,13 @@
 
 use crate::foundation::dim::{Dim, Point, points_in};
 use crate::foundation::ids::{ElementId, NodeId};
+use crate::material::Material;
 use crate::math::row::Row;
 use crate::soft_body::SoftBody;
-use crate::soft_body::element_law::Elasticity;
+use crate::soft_body::element_law::{Elasticity, Matrix};
+use crate::soft_body::hyperelasticity;
 use crate::soft_body::plasticity::plastic_stiffness_factor;
+use crate::soft_body::viscosity::viscous_stress;
 use glam::Vec3;
 
 /// Distance from the tip at which the weight q begins to fall [voxels].
@@ -37,7 +40,7 @@ fn outer_radius<D: Dim>() -> f32 {
 }
 
 /// Matrix by rows.
-type Rows = [Vec3; 3];
+pub type Rows = [Vec3; 3];
 
 /// Deformation, stress and energy of one element.
 #[derive(Copy, Clone, Debug)]
@@ -124,8 +127,9 @@ impl<'a, D: Dim> NearField<'a, D> {
         (force / front.length, front)
     }
 
-    /// Returns the greatest principal value of the mean Cauchy stress [Pa] within `radius` [voxels] of a node.
-    pub fn mean_tension(&mut self, node: NodeId, radius: f32) -> f32 {
+    /// Returns the mean Cauchy stress [Pa] within `radius` [voxels] of a node; `None` if no element there carries
+    /// stress.
+    pub fn mean_stress(&mut self, node: NodeId, radius: f32) -> Option<Rows> {
         let at = self.body.mesh().node(node).at;
         let share = |voxel: Point| {
             let apart = distance::<D>([0, 1, 2].map(|axis: usize| {
@@ -154,11 +158,22 @@ impl<'a, D: Dim> NearField<'a, D> {
                     sum[row][column] += share * load.stress[row].dot(load.deformation[column]);
                 }
             }
+            (D::N..3).for_each(|axis| sum[axis][axis] += share * load.stress[axis][axis]);
         }
-        match volume > 0.0 {
-            true => greatest_eigenvalue::<D>(&sum.map(|row| row / volume)),
-            false => 0.0,
+        (volume > 0.0).then(|| sum.map(|row| row / volume))
+    }
+
+    /// Returns the equivalent tension [Pa] of the Cauchy stress in one element.
+    pub fn tension_in(&mut self, id: ElementId, pressure_factor: Option<f32>) -> f32 {
+        let load = self.load(id);
+        let ratio = determinant(&load.deformation);
+        if ratio < MIN_RATIO || self.is_fixed(id) {
+            return 0.0;
         }
+        let stress = load.stress.map(|row| {
+            Vec3::from([0, 1, 2].map(|column: usize| row.dot(load.deformation[column]) / ratio))
+        });
+        equivalent_tension::<D>(&stress, pressure_factor)
     }
 
     /// Lists the elements of the node's piece in the voxels up to `reach` away, each once, with the sum of
@@ -226,6 +241,23 @@ impl<'a, D: Dim> NearField<'a, D> {
         self.loads.push((id, load));
         load
     }
+}
+
+/// Returns the uniaxial tension [Pa] that counts as much as a Cauchy stress: its greatest principal value, or by the
+/// criterion of Drucker and Prager with the factor γ.
+pub fn equivalent_tension<D: Dim>(stress: &Rows, pressure_factor: Option<f32>) -> f32 {
+    let Some(factor) = pressure_factor else {
+        return greatest_eigenvalue::<D>(stress);
+    };
+    let trace = stress[0].x + stress[1].y + stress[2].z;
+    let half = |i: usize, j: usize| 0.5 * (stress[i][j] + stress[j][i]);
+    let mut squares = 0.0;
+    for i in 0..3 {
+        let normal = stress[i][i] - trace / 3.0;
+        let shear = half(i, (i + 1) % 3);
+        squares += 0.5 * normal * normal + shear * shear;
+    }
+    (squares.sqrt() + factor * trace) / (1.0 / 3f32.sqrt() + factor)
 }
 
 /// Returns the weight q at each squared distance from the tip [voxels²]; at larger distances, it is 0.
@@ -303,13 +335,11 @@ fn load_of<D: Dim>(body: &SoftBody<D>, id: ElementId) -> Load {
     (D::N..3).for_each(|row| deformation[row] = Vec3::AXES[row]);
     let batches = body.element_forces();
     let rotation = batches.rotation(id);
-    let young = body.material(element).elasticity.young * body.stiffness_scale();
-    let elasticity = Elasticity {
-        young,
-        ..body.material(element).elasticity
-    };
+    let mut material = *body.material(element);
+    material.elasticity.young *= body.stiffness_scale();
+    let dashpots = batches.internal_state(id).map(|state| state.dashpots);
     let Some(plastic) = batches.plastic_inverse(id) else {
-        let (stress, energy) = elastic_stress::<D>(elasticity, &deformation, &rotation);
+        let (stress, energy) = stress_of::<D>(&material, &deformation, &rotation, dashpots);
         return Load {
             deformation,
             stress,
@@ -318,7 +348,7 @@ fn load_of<D: Dim>(body: &SoftBody<D>, id: ElementId) -> Load {
     };
     let elastic = product(&deformation, &plastic);
     let soft = plastic_stiffness_factor::<D>(&plastic.map(|row| row.as_dvec3())) as f32;
-    let (stress, energy) = elastic_stress::<D>(elasticity, &elastic, &rotation);
+    let (stress, energy) = stress_of::<D>(&material, &elastic, &rotation, dashpots);
     let transposed =
         [0, 1, 2].map(|k: usize| Vec3::new(plastic[0][k], plastic[1][k], plastic[2][k]));
     Load {
@@ -326,6 +356,37 @@ fn load_of<D: Dim>(body: &SoftBody<D>, id: ElementId) -> Load {
         stress: product(&stress, &transposed).map(|row| row * soft),
         energy: soft * energy,
     }
+}
+
+/// Returns the first Piola–Kirchhoff stress [Pa] and the energy density [J/m³] of an elastic deformation with a known
+/// rotation, with the strains of the dashpots if the material has an internal state.
+fn stress_of<D: Dim>(
+    material: &Material,
+    deformation: &Rows,
+    rotation: &Rows,
+    dashpots: Option<[[f32; 6]; 2]>,
+) -> (Rows, f32) {
+    let elasticity = material.elasticity;
+    let wide = deformation.map(|row| row.as_dvec3());
+    let narrow = |stress: Matrix| stress.map(|row| row.as_vec3());
+    let (mut stress, mut energy) = match material.stress_law.factors() {
+        None => elastic_stress::<D>(elasticity, deformation, rotation),
+        Some(factors) => (
+            narrow(hyperelasticity::stress(elasticity, factors, &wide)),
+            hyperelasticity::energy(elasticity, factors, &wide) as f32,
+        ),
+    };
+    if let Some(dashpots) = dashpots
+        && material.is_viscous()
+    {
+        let dashpots = dashpots.map(|term| term.map(f64::from));
+        let (own, stored) = viscous_stress(elasticity, &material.prony, &wide, &dashpots);
+        for (row, own) in stress.iter_mut().zip(narrow(own)) {
+            *row += own;
+        }
+        energy += stored as f32;
+    }
+    (stress, energy)
 }
 
 /// Returns the first Piola–Kirchhoff stress [Pa] and the energy density [J/m³] of an elastic deformation with
@@ -348,6 +409,7 @@ fn elastic_stress<D: Dim>(
     for row in 0..D::N {
         stress[row] += rotation[row] * (lame * spread);
     }
+    (D::N..3).for_each(|axis| stress[axis][axis] = lame * spread);
     (stress, shear * squared + 0.5 * lame * spread * spread)
 }
 
@@ -399,7 +461,6 @@ pub(super) mod tests {
     use super::*;
     use crate::foundation::dim::{Dim2, Dim3, DimVector};
     use crate::fracture::blade::Blade;
-    use crate::material::Material;
     use crate::math::rotation::Rotation;
     use crate::topology::grid::VoxelGrid;
     use glam::Vec2;
@@ -540,7 +601,10 @@ pub(super) mod tests {
     fn check_tension<D: Dim>() -> [f32; 2] {
         let (body, node, stress) = stretched::<D>(&Material::default());
         let mut near = NearField::new(&body);
-        [1.0, 2.0].map(|radius| near.mean_tension(node, radius) / stress)
+        [1.0, 2.0].map(|radius| {
+            let mean = near.mean_stress(node, radius).unwrap();
+            equivalent_tension::<D>(&mean, None) / stress
+        })
     }
 
     #[test]

@@ -5,7 +5,9 @@ use super::shapes::{BallText, BoxText, CapsuleText, HalfSpaceText};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::inspect::Elasticity;
-use fuwafuwa::{Damping, Layers, Material, PronyTerm, StressLaw};
+use fuwafuwa::{
+    Damping, Layers, Material, PronyTerm, RateToughening, StrengthCriterion, StressLaw,
+};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -39,10 +41,15 @@ pub struct MaterialText {
     pub rolling_resistance: Option<f32>,
     /// Tensile strength of a smooth surface [Pa].
     pub strength: Option<f32>,
+    /// Hydrostatic strength [Pa]. With it, stress in all directions counts, by the criterion of Drucker and Prager, and
+    /// cracks also start inside; otherwise the greatest tension decides.
+    pub hydrostatic_strength: Option<f32>,
     /// Scatter of the strength, 0 to 10: largest relative amount by which the strength of a point is raised.
     pub strength_scatter: Option<f32>,
     /// Fracture toughness in plane strain [Pa √m].
     pub toughness: Option<f32>,
+    /// Speed of a crack up to which the fracture energy is constant [m/s], and the exponent with which it grows beyond.
+    pub rate_toughening: Option<[f32; 2]>,
     /// Yield strain, beyond which the deformation is permanent; purely elastic if missing.
     pub yield_strain: Option<f32>,
     /// Limit of permanent deformation, 1 to 4: largest factor by which a width can shrink permanently.
@@ -294,7 +301,15 @@ impl MaterialText {
             friction: self.friction.unwrap_or(usual.friction),
             rolling_resistance: self.rolling_resistance.unwrap_or(usual.rolling_resistance),
             strength: borne(self.strength, usual.strength),
+            strength_criterion: match self.hydrostatic_strength {
+                Some(hydrostatic) => StrengthCriterion::DruckerPrager { hydrostatic },
+                None => usual.strength_criterion,
+            },
             strength_scatter: self.strength_scatter.unwrap_or(usual.strength_scatter),
+            rate_toughening: match self.rate_toughening {
+                Some([speed, exponent]) => RateToughening { speed, exponent },
+                None => usual.rate_toughening,
+            },
             toughness: borne(self.toughness, usual.toughness),
             yield_strain: self.yield_strain.unwrap_or(usual.yield_strain),
             plastic_limit: self.plastic_limit.unwrap_or(usual.plastic_limit),
@@ -322,6 +337,14 @@ impl MaterialText {
                 != Material::default().rolling_resistance)
                 .then_some(material.rolling_resistance),
             strength: finite(material.strength),
+            hydrostatic_strength: match material.strength_criterion {
+                StrengthCriterion::GreatestTension => None,
+                StrengthCriterion::DruckerPrager { hydrostatic } => Some(hydrostatic),
+            },
+            rate_toughening: (material.rate_toughening != RateToughening::NONE).then_some([
+                material.rate_toughening.speed,
+                material.rate_toughening.exponent,
+            ]),
             strength_scatter: (material.strength_scatter != Material::default().strength_scatter)
                 .then_some(material.strength_scatter),
             toughness: finite(material.toughness),

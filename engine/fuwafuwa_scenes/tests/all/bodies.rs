@@ -1,7 +1,7 @@
 //! Shapes and materials of bodies in scenes.
 
 use crate::picture::png_of;
-use fuwafuwa::{Dim, Dim2, Dim3, PronyTerm, SoftBody, StressLaw, Vec2};
+use fuwafuwa::{Dim, Dim2, Dim3, PronyTerm, SoftBody, StrengthCriterion, StressLaw, Vec2};
 use fuwafuwa_scenes::disk::open_scene;
 use fuwafuwa_scenes::{Recording, Scene, SceneError};
 use std::path::PathBuf;
@@ -266,7 +266,7 @@ fn model_in_scene_folder_becomes_body() {
 }
 
 #[test]
-fn material_reads_and_writes_stress_law_and_prony_series() {
+fn material_reads_and_writes_laws_of_stress_time_and_strength() {
     let text = "
 dim = 2
 [[material]]
@@ -275,6 +275,8 @@ stress_law = { yeoh = [0.05, -0.001] }
 prony = [[0.5, 0.2], [1.0, 10.0]]
 [[material]]
 stress_law = \"neo_hookean\"
+hydrostatic_strength = 5000.0
+rate_toughening = [0.01, 0.5]
 [[body]]
 shape = \"ball\"
 n = 4
@@ -292,6 +294,12 @@ n = 4
     assert_eq!(yeoh.prony, terms);
     assert_eq!(neo_hookean.stress_law, StressLaw::NeoHookean);
     assert_eq!(neo_hookean.prony, [PronyTerm::NONE; 2]);
+    let hydrostatic = 5000.0;
+    assert_eq!(
+        neo_hookean.strength_criterion,
+        StrengthCriterion::DruckerPrager { hydrostatic }
+    );
+    assert_eq!(neo_hookean.rate_toughening.exponent, 0.5);
     let again = Scene::read("toy.toml", &scene.text().unwrap(), &[]).unwrap();
     assert_eq!(again.materials(), scene.materials());
 }

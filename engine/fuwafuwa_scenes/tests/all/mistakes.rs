@@ -61,7 +61,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "young",
             "yuong",
-            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `stress_law`, `prony`, `density`, `mass_damping`, `stiffness_damping`, `damping`, `friction`, `rolling_resistance`, `strength`, `strength_scatter`, `toughness`, `yield_strain`, `plastic_limit`, `unbreakable`, `colour`",
+            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `stress_law`, `prony`, `density`, `mass_damping`, `stiffness_damping`, `damping`, `friction`, `rolling_resistance`, `strength`, `hydrostatic_strength`, `strength_scatter`, `toughness`, `rate_toughening`, `yield_strain`, `plastic_limit`, `unbreakable`, `colour`",
         ),
         (
             "\"ball\"",
@@ -153,6 +153,16 @@ fn error_names_file_line_field_and_expectation() {
             "young = 5000.0",
             "prony = [[0.1, 1.0], [0.1, 1.0], [0.1, 1.0]]",
             ", line 3: material 1, prony: expected at most 2 terms, found 3",
+        ),
+        (
+            "young = 5000.0",
+            "strength = 3000.0\nhydrostatic_strength = 900.0",
+            ", line 3: material 1, hydrostatic_strength: expected finite and above a third of a finite strength [Pa], found 900.0",
+        ),
+        (
+            "young = 5000.0",
+            "rate_toughening = [0.1, 3.0]",
+            ", line 3: material 1, rate_toughening, exponent: expected 0 to 2, found 3.0",
         ),
         (
             "young = 5000.0",

@@ -52,7 +52,7 @@ impl KnifeState {
             let Some((id, _)) = self.samples[place].inside else {
                 continue;
             };
-            let row = self.row(&pose, place, &bodies[id], duration);
+            let row = self.row(&pose, place, &bodies[id], (holder, duration));
             let piece = bodies[id].pieces().of_node(row.weights[0].0);
             if bodies[id].pieces().list[piece].asleep && holder.pushes() {
                 woken.push((id.slot(), piece));
@@ -105,7 +105,7 @@ impl KnifeState {
         pose: &EdgePose,
         place: usize,
         body: &SoftBody<D>,
-        duration: f32,
+        (holder, duration): (&RigidState, f32),
     ) -> EdgeRow {
         let (id, point) = self.samples[place].inside.expect("the sample is in a body");
         let mesh = body.mesh();
@@ -116,12 +116,16 @@ impl KnifeState {
         let material = body.material(element);
         let ways = [pose.along, pose.toward];
         let [along, toward] = point.rest_directions(body, ways).unwrap_or(ways);
+        let weights = body.weights(element, point.at);
+        let lever = self.lever(pose, place);
         let forth = match point.is_uncut_ahead(body, along, toward) {
-            true => self.cutting_force(material),
+            true => {
+                let slip = holder.velocity_at(lever) - body.velocity_of(&weights);
+                self.cutting_force(material, slip.dot(pose.toward))
+            }
             false => 0.0,
         };
         let share = self.share::<D>(pose, place) * duration;
-        let weights = body.weights(element, point.at);
         let inverse_masses = weights
             .iter()
             .map(|&(node, weight)| weight * weight * body.inverse_masses()[node]);
@@ -131,7 +135,7 @@ impl KnifeState {
             body: id,
             inverse_mass: [pose.toward, pose.across].map(inverse_mass),
             weights,
-            lever: self.lever(pose, place),
+            lever,
             // A sample that represents no length, in unbreakable material, gives 0 · ∞ = NaN, which `max`
             // turns into 0.
             limits: [forth, material.strength * self.height].map(|k| (share * k).max(0.0)),
@@ -139,13 +143,13 @@ impl KnifeState {
         }
     }
 
-    /// Returns the force per metre of edge that cuts a material [N/m].
-    fn cutting_force(&self, material: &Material) -> f32 {
+    /// Returns the force per metre of edge that cuts a material [N/m] with a `speed` of the edge in it [m/s].
+    fn cutting_force(&self, material: &Material, speed: f32) -> f32 {
         let dull = match self.radius > 0.0 {
             true => 2.0 * self.radius * material.strength,
             false => 0.0,
         };
-        material.fracture_energy() + dull
+        material.fracture_energy_at(speed) + dull
     }
 }
 
