@@ -5,6 +5,7 @@
 
 mod fracture;
 mod pull;
+mod strength;
 
 use crate::check::{self, run_all};
 use crate::plot::Plot;
@@ -50,6 +51,9 @@ enum Which {
     /// Cracks begin to grow in a strip in pure shear, a notched bar and a double cantilever beam. Reference: energy release
     /// and stress intensity of the challenge set of Kamarei, Zeng, Dolbow and Lopez-Pamies (2026).
     Fracture,
+    /// A poker chip cracks inside, and a twisted tube at its shear strength. Reference: the strength surface of Kumar,
+    /// Bourdin, Francfort and Lopez-Pamies (2020), and the challenge set of Kamarei, Zeng, Dolbow and Lopez-Pamies (2026).
+    Strength,
     /// The experiments that take some seconds each.
     Quick,
     /// All experiments.
@@ -57,12 +61,12 @@ enum Which {
 }
 
 /// Experiments that take more than some five seconds on two cores, which [`Which::Quick`] leaves out.
-const LONG: [Which; 1] = [Which::Fracture];
+const LONG: [Which; 2] = [Which::Fracture, Which::Strength];
 
 type Experiment = fn(&Progress) -> Result<Record>;
 
 /// All experiments, in the order of their output.
-const EXPERIMENTS: [(Which, Experiment); 3] = [
+const EXPERIMENTS: [(Which, Experiment); 4] = [
     (Which::Elastica, |progress| {
         of_check(check::elastica::check, 4, progress)
     }),
@@ -70,6 +74,7 @@ const EXPERIMENTS: [(Which, Experiment); 3] = [
         of_check(check::turek_hron::check, 8, progress)
     }),
     (Which::Fracture, fracture::run),
+    (Which::Strength, strength::run),
 ];
 
 /// Introduction of the report.

@@ -64,12 +64,7 @@ impl<D: Dim> Pull<D> {
                 }
             }
         }
-        let mut world = World::<D>::new(WorldConfig {
-            gravity: D::Vector::ZERO,
-            stiff_bodies: StiffBodies::Exact,
-            sleep: false,
-            ..WorldConfig::default()
-        })?;
+        let mut world = still_world::<D>()?;
         let body = world.add_soft_body(self.body)?;
         let tick = world.config().tick;
         let (mut course, mut way, mut load) = (Vec::new(), 0.0, 0.0f64);
@@ -104,6 +99,16 @@ impl<D: Dim> Pull<D> {
         }
         bail!("no crack grew in {} s", self.longest)
     }
+}
+
+/// Returns a world without gravity and sleep, in which no body is scaled.
+pub fn still_world<D: Dim>() -> Result<World<D>> {
+    Ok(World::new(WorldConfig {
+        gravity: D::Vector::ZERO,
+        stiff_bodies: StiffBodies::Exact,
+        sleep: false,
+        ..WorldConfig::default()
+    })?)
 }
 
 /// Returns the damping of a body that is pulled slowly: a ratio of 0.3 at a frequency [Hz].
