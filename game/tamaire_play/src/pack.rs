@@ -222,7 +222,8 @@ fn open(id: &str, bytes: &[u8], fetch: Fetch, voxels: &mut usize) -> Result<Leve
     let found = level.solid_voxels();
     let left = voxels.checked_sub(found).ok_or_else(|| {
         unreadable(format!(
-            "expected at most {MAX_SOLID_VOXELS} solid voxels in all levels of a pack, found {found} more than {}",
+            "expected at most {MAX_SOLID_VOXELS} solid voxels in all levels of a pack, found {found} after {} in the \
+             levels before",
             MAX_SOLID_VOXELS - *voxels
         ))
     })?;
@@ -321,7 +322,7 @@ fn id_of(name: &str) -> String {
 /// Returns the reason why a file of `found` bytes does not fit into a pack.
 pub fn too_long(found: u64) -> String {
     format!(
-        "expected at most {MAX_BYTES} bytes in all files of a pack, found a file of {found} bytes that exceeds them"
+        "expected at most {MAX_BYTES} bytes in all files of a pack, found a file of {found} bytes, which no longer fits"
     )
 }
 
@@ -566,8 +567,8 @@ mod tests {
         assert_eq!(pack.levels.len(), 0);
         let told = refused(&pack);
         let expected = format!(
-            "one.toml: one.toml: expected at most 67108864 bytes in all files of a pack, found a file of {} bytes that \
-             exceeds them",
+            "one.toml: one.toml: expected at most 67108864 bytes in all files of a pack, found a file of {} bytes, \
+             which no longer fits",
             text.len()
         );
         assert!(told.contains(&expected) && told.len() == 4, "{told:?}");
