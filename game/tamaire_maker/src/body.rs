@@ -2,19 +2,21 @@
 
 use crate::drawing::Drawing;
 use crate::items::{Item, bounds};
-use crate::palette::{Palette, number_in};
+use crate::palette::{Palette, number_in, renumbered_runs};
 use fuwafuwa::{Dim, Dim2, Dim3, Vec3, VoxelGrid};
-use fuwafuwa_scenes::scene::{BodyText, MAX_MATERIALS, VoxelsText};
+use fuwafuwa_scenes::scene::{BodyText, MAX_BODIES, MaterialText, VoxelsText};
 use fuwafuwa_scenes::{Scene, SceneError};
+use std::collections::BTreeSet;
 
 /// Edge length of a cell of the paper in a room [m], so that a full page is 0.9 m wide.
 const PAPER_CELL: f32 = 0.9 / 64.0;
 /// Edge length of a cell of a block in a room [m].
 const BLOCK_CELL: f32 = 0.9 / 32.0;
 
-/// Makes a drawing the body with index `body` of a scene, or a new body without an index. Its middle comes to `centre`
-/// [m], or stays where the body was. A cell is `cell` [m] wide; by default, a page or a block is 0.9 m wide. The crayons
-/// become materials of the scene. Returns the index of the body, or `None` if the drawing is empty.
+/// Replaces the body with index `body` with a drawing, or adds a body if `body` is `None`. A replaced body keeps its middle;
+/// a new one has it at `centre` [m]. `cell` is the edge length of a cell [m]; by default, a page or a block is 0.9 m wide.
+/// The crayons become materials of the scene. Returns the index of the body. Returns `None` and changes nothing if the
+/// drawing is empty, or if the scene can have no further body or material.
 pub fn put(
     scene: &mut Scene,
     body: Option<usize>,
@@ -27,16 +29,21 @@ pub fn put(
         false => BLOCK_CELL,
     });
     let (mut voxels, _) = drawing.voxels(cell)?;
+    let known = body.filter(|&body| body < scene.body.len());
+    if known.is_none() && scene.body.len() >= MAX_BODIES {
+        return None;
+    }
     // A number without a material is drawn with the first one, so that no cell is lost.
     let mut numbers = [1u8; 256];
     numbers[0] = 0;
+    let mut materials = scene.material.clone();
     for (number, material) in (1..=u8::MAX).zip(palette.materials()) {
         if drawing.cells().contains(&number) {
-            numbers[usize::from(number)] = number_in(&mut scene.material, material, MAX_MATERIALS);
+            numbers[usize::from(number)] = number_in(&mut materials, material)?;
         }
     }
-    voxels.runs = renumbered(&voxels.runs, |number| numbers[usize::from(number)]);
-    let known = body.filter(|&body| body < scene.body.len());
+    scene.material = materials;
+    voxels.runs = renumbered_runs(&voxels.runs, |number| numbers[usize::from(number)]);
     let before = known.and_then(|body| middle_of(scene, body));
     let text = drawn(known.map(|body| &scene.body[body]), voxels);
     let place = known.unwrap_or(scene.body.len());
@@ -84,19 +91,6 @@ fn middle_of(scene: &Scene, body: usize) -> Option<Vec3> {
     Some(0.5 * (low + high))
 }
 
-/// Returns run lengths with other numbers.
-fn renumbered(runs: &str, number: impl Fn(u8) -> u8) -> String {
-    let runs = runs.split_ascii_whitespace().map(|run| {
-        let parts = run.split_once('x');
-        let known = parts.and_then(|(length, found)| Some((length, found.parse().ok()?)));
-        known.map_or_else(
-            || run.to_string(),
-            |(length, found)| format!("{length}x{}", number(found)),
-        )
-    });
-    runs.collect::<Vec<_>>().join(" ")
-}
-
 /// Drawing of a body of a scene.
 pub struct Taken {
     /// The drawing.
@@ -105,7 +99,8 @@ pub struct Taken {
     pub cell: f32,
 }
 
-/// Brings a body of a scene to the paper. Its materials are added to the palette. `None` if the scene has no such body.
+/// Brings a body of a scene to the paper. Its materials are added to the palette; one for which the palette has no space
+/// becomes the first crayon. `None` if the scene has no such body.
 ///
 /// # Errors
 /// [`SceneError`] if the body cannot be built.
@@ -144,27 +139,28 @@ fn taken<D: Dim>(
     let Some(grid) = tinted.as_ref().or(plain) else {
         return Ok(None);
     };
-    let materials = scene.material.iter();
-    let numbers: Vec<u8> = materials
-        .map(|material| palette.number_of(material))
-        .collect();
-    let grid = grid_with(grid, |material| {
-        let place = usize::from(material).checked_sub(1);
-        let known = place.and_then(|place| numbers.get(place));
-        known.copied().unwrap_or(1)
-    });
-    let drawing = Drawing::of_grid(&grid);
-    // A grid that is too large for the sheet has fewer, larger cells there.
-    let longest = grid.size().into_iter().max().unwrap_or(1) as f32;
-    let shown = drawing.bounds().map_or(1, |[low, high]| {
-        let lengths = [0, 1, 2].map(|axis: usize| high[axis] + 1 - low[axis]);
-        lengths.into_iter().max().unwrap_or(1)
-    });
-    let scale = (longest / shown as f32).max(1.0);
-    let fits = grid.size().map(|count| count as usize);
-    let is_whole = (0..3).all(|axis| fits[axis] <= drawing.size()[axis]);
-    let cell = grid.voxel_size() * if is_whole { 1.0 } else { scale };
+    let numbers = numbers_in(palette, &scene.material, grid);
+    let grid = grid_with(grid, |material| numbers[usize::from(material)]);
+    let (drawing, scale) = Drawing::of_grid_scaled(&grid);
+    let cell = grid.voxel_size() * scale;
     Ok(Some(Taken { drawing, cell }))
+}
+
+/// Returns the number in the palette of each material that a grid uses. 1 for a material that is unknown or has no space.
+fn numbers_in<D: Dim>(
+    palette: &mut Palette,
+    materials: &[MaterialText],
+    grid: &VoxelGrid<D>,
+) -> [u8; 256] {
+    let used: BTreeSet<u8> = grid.voxels().map(|voxel| grid.material(voxel)).collect();
+    let mut numbers = [1; 256];
+    for number in used {
+        let place = usize::from(number).checked_sub(1);
+        let material = place.and_then(|place| materials.get(place));
+        let known = material.and_then(|material| palette.number_of(material));
+        numbers[usize::from(number)] = known.unwrap_or(1);
+    }
+    numbers
 }
 
 /// Returns a grid with other material numbers for its solid voxels.
@@ -183,10 +179,18 @@ mod tests {
     use super::*;
     use crate::drawing::Brush;
     use crate::palette::crayon;
+    use fuwafuwa_scenes::scene::Form;
     use tamaire_play::playground::Stuff;
 
     fn blank(dim: u8) -> Scene {
         Scene::read("blank", &format!("dim = {dim}\nmaterial = []"), &[]).unwrap()
+    }
+
+    fn coloured(red: u8) -> MaterialText {
+        MaterialText {
+            colour: Some([red, 0, 0]),
+            ..crayon(Stuff::Jelly)
+        }
     }
 
     #[test]
@@ -240,6 +244,61 @@ mod tests {
         }
         assert_eq!(scene.body[0].gravity_scale, Some(0.2));
         assert!(scene.body[0].voxels.is_some() && scene.body[0].shape.is_none());
+    }
+
+    #[test]
+    fn redrawn_body_with_an_empty_margin_keeps_its_size() {
+        let mut scene = blank(2);
+        scene.material.push(crayon(Stuff::Jelly));
+        // A square of 30 voxels with a margin of 30 below and on the left, and 40 above and on the right.
+        let rows = ["30x0 30x1 40x0"; 30].join(" ");
+        scene.body.push(BodyText {
+            voxels: Some(VoxelsText {
+                size: [100, 100, 1],
+                voxel_size: 0.01,
+                runs: format!("3000x0 {rows} 4000x0"),
+                surface: None,
+            }),
+            ..BodyText::default()
+        });
+        let taken = take(&scene, 0, &mut Palette::default()).unwrap().unwrap();
+        assert_eq!(taken.drawing.solid_count(), 900);
+        assert!((taken.cell - 0.01).abs() < 1e-6, "{}", taken.cell);
+    }
+
+    #[test]
+    fn taken_body_adds_only_the_materials_that_it_uses() {
+        let mut scene = blank(2);
+        scene.material = (1..=200).map(coloured).collect();
+        scene.body.push(BodyText {
+            shape: Some(Form::Box),
+            n: Some(8),
+            material: Some(7),
+            ..BodyText::default()
+        });
+        let mut palette = Palette::default();
+        take(&scene, 0, &mut palette).unwrap().unwrap();
+        let known = palette.materials();
+        assert_eq!(known.len(), Stuff::ALL.len() + 1);
+        assert_eq!(known.last(), Some(&coloured(7)));
+    }
+
+    #[test]
+    fn drawing_without_space_for_it_changes_nothing() {
+        let mut drawing = Drawing::paper();
+        let middle = Vec3::new(32.0, 32.0, 0.5);
+        drawing.stroke(middle, middle, 4.0, Brush::Draw(Stuff::Clay.number()));
+        drawing.end_stroke();
+        let (palette, place) = (Palette::default(), (Vec3::ZERO, None));
+        let mut many_materials = blank(2);
+        many_materials.material = (1..=u8::MAX).map(coloured).collect();
+        let mut many_bodies = blank(2);
+        many_bodies.body = vec![BodyText::default(); MAX_BODIES];
+        for mut scene in [many_materials, many_bodies] {
+            let before = scene.clone();
+            assert_eq!(put(&mut scene, None, &drawing, &palette, place), None);
+            assert!(scene == before);
+        }
     }
 
     #[test]

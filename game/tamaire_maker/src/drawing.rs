@@ -103,15 +103,20 @@ impl Drawing {
 
     /// Creates a drawing from the grid of a body, in the middle of paper or of a block. The drawing is only as large as
     /// the solid part of the grid. A larger body is reduced, without change of its proportions: each cell takes the
-    /// majority of the voxels that it covers, and is solid if at least a third of them is.
+    /// majority of the voxels that it covers, and is solid if at least a third of them are.
     pub fn of_grid<D: Dim>(grid: &VoxelGrid<D>) -> Self {
+        Self::of_grid_scaled(grid).0
+    }
+
+    /// Creates a drawing as [`Drawing::of_grid`] does. Also returns the edge length of a cell in voxels, at least 1.
+    pub fn of_grid_scaled<D: Dim>(grid: &VoxelGrid<D>) -> (Self, f32) {
         let size = match D::N {
             2 => [PAPER, PAPER, 1],
             _ => [BLOCK; 3],
         };
         let solid = grid.voxels().filter(|&voxel| grid.is_present(voxel));
         let Some([low, high]) = box_around(solid) else {
-            return Self::empty(size);
+            return (Self::empty(size), 1.0);
         };
         let extent = [0, 1, 2].map(|axis: usize| (high[axis] - low[axis] + 1) as usize);
         let reduced = shrink::reduced(extent, size[0]);
@@ -122,7 +127,9 @@ impl Drawing {
                 false => 0,
             }
         });
-        Self::centred(size, &Self::of(reduced, cells))
+        let [before, after] = [extent, reduced].map(|sides| sides.into_iter().max().unwrap_or(1));
+        let drawing = Self::centred(size, &Self::of(reduced, cells));
+        (drawing, before as f32 / after as f32)
     }
 
     fn empty(size: [usize; 3]) -> Self {
@@ -158,6 +165,16 @@ impl Drawing {
     pub fn without_history(&self) -> Self {
         let mut copy = Self::empty(self.size());
         copy.cells.clone_from(&self.cells);
+        copy.history = History::new(Runs::of(&copy.cells));
+        copy
+    }
+
+    /// Returns a copy with other crayons, without steps to undo. `numbers` has the new crayon of each crayon.
+    pub fn renumbered(&self, numbers: &[u8; 256]) -> Self {
+        let mut copy = self.clone();
+        for cell in &mut copy.cells {
+            *cell = numbers[usize::from(*cell)];
+        }
         copy.history = History::new(Runs::of(&copy.cells));
         copy
     }

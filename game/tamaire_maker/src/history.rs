@@ -32,6 +32,24 @@ impl<T: PartialEq> History<T> {
         }
     }
 
+    /// Replaces the present value. The values before and after stay.
+    pub fn amend(&mut self, next: T) {
+        self.present = next;
+    }
+
+    /// Forgets the oldest values before the present one until the others together have a size of at most `most`. `size`
+    /// returns the size of a value.
+    pub fn forget_beyond(&mut self, most: usize, size: impl Fn(&T) -> usize) {
+        let mut all = 0_usize;
+        let newest = self.past.iter().rev();
+        let kept = newest.take_while(|value| {
+            all = all.saturating_add(size(value));
+            all <= most
+        });
+        let kept = kept.count();
+        self.past.drain(..self.past.len() - kept);
+    }
+
     /// Whether there is a value to go back to.
     pub fn can_undo(&self) -> bool {
         !self.past.is_empty()
@@ -80,5 +98,26 @@ mod tests {
         history.commit(7);
         assert!(!history.can_redo() && history.undo());
         assert_eq!(*history.present(), 1);
+    }
+
+    #[test]
+    fn amended_value_is_no_step_and_keeps_redo() {
+        let mut history = History::new(0);
+        (1..=2).for_each(|k| history.commit(k));
+        assert!(history.undo());
+        history.amend(9);
+        assert_eq!(*history.present(), 9);
+        assert!(history.redo() && *history.present() == 2);
+        assert!(history.undo() && *history.present() == 9);
+        assert!(history.undo() && *history.present() == 0);
+    }
+
+    #[test]
+    fn oldest_values_are_forgotten_beyond_a_size() {
+        let mut history = History::new(0);
+        (1..=9).for_each(|k| history.commit(k));
+        history.forget_beyond(15, |&k| k);
+        let undone = (0..9).take_while(|_| history.undo()).count();
+        assert_eq!((undone, *history.present()), (2, 7));
     }
 }

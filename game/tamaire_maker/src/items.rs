@@ -18,7 +18,7 @@ pub(crate) mod tests;
 
 pub use additions::{Kind, add};
 pub use arrangement::{Guide, aligned, free_place, snapped};
-pub use bounds::bounds;
+pub use bounds::{bounds, union};
 pub use clip::{Clip, copy, paste};
 pub use layers::{Stops, set_stops, stops_of};
 pub use movement::{rotate, stretch, translate};
@@ -27,7 +27,7 @@ pub use removal::{Dropped, Removed, remove};
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{
-    Form, HandText, JointAnchorText, JointKindText, KnifeText, MotionTypeText, ObstacleText,
+    Form, HandText, JointAnchorText, JointKindText, KnifeText, MotionTypeText,
 };
 use goals::is_possible;
 use std::collections::BTreeSet;
@@ -111,7 +111,7 @@ pub fn kind_of(scene: &Scene, item: Item) -> Option<Kind> {
             let form = body.shape.unwrap_or(Form::Ball);
             Kind::Body(form, Stuff::Jelly)
         }),
-        Item::Obstacle(index) => scene.obstacle.get(index).map(kind_of_obstacle),
+        Item::Obstacle(index) => kind_of_obstacle(scene, index),
         Item::Hand(_) => None,
         Item::RigidBody(index) => scene
             .rigid_body
@@ -139,18 +139,18 @@ pub fn kind_of(scene: &Scene, item: Item) -> Option<Kind> {
     }
 }
 
-fn kind_of_obstacle(text: &ObstacleText) -> Kind {
-    let filters = text.layers.map(|layers| layers.filters);
-    match filters {
+fn kind_of_obstacle(scene: &Scene, index: usize) -> Option<Kind> {
+    let text = scene.obstacle.get(index)?;
+    Some(match stops_of(scene, index) {
         _ if text.angular_velocity.is_some() => Kind::Paddle,
         _ if !text.path.is_empty() && text.switch.is_some() => Kind::Door,
         _ if !text.path.is_empty() => Kind::Lift,
-        Some(2) => Kind::Glass,
-        Some(1) => Kind::Curtain,
+        Some(Stops::Hands) => Kind::Glass,
+        Some(Stops::Bodies) => Kind::Curtain,
         _ if text.ball.is_some() => Kind::Ball,
         _ if text.capsule.is_some() => Kind::Bar,
         _ => Kind::Wall,
-    }
+    })
 }
 
 /// Distance up to which a bar touches the basket that it encloses [m].
@@ -209,19 +209,28 @@ fn first_leader(scene: &Scene) -> Option<usize> {
 
 /// Returns the item to which an anchor holds; `None` for a fixed point.
 fn holder_of_anchor(anchor: &JointAnchorText) -> Option<Item> {
-    let of = |number: Option<usize>, item: fn(usize) -> Item| number?.checked_sub(1).map(item);
-    of(anchor.body, Item::Body)
-        .or_else(|| of(anchor.obstacle, Item::Obstacle))
-        .or_else(|| of(anchor.hand, Item::Hand))
-        .or_else(|| of(anchor.rigid_body, Item::RigidBody))
+    numbered(anchor.body, Item::Body)
+        .or_else(|| numbered(anchor.obstacle, Item::Obstacle))
+        .or_else(|| numbered(anchor.hand, Item::Hand))
+        .or_else(|| numbered(anchor.rigid_body, Item::RigidBody))
 }
 
 /// Returns the item to which a knife is fixed.
 fn holder_of_knife(knife: &KnifeText) -> Option<Item> {
-    let of = |number: Option<usize>, item: fn(usize) -> Item| number?.checked_sub(1).map(item);
-    of(knife.obstacle, Item::Obstacle)
-        .or_else(|| of(knife.hand, Item::Hand))
-        .or_else(|| of(knife.rigid_body, Item::RigidBody))
+    numbered(knife.obstacle, Item::Obstacle)
+        .or_else(|| numbered(knife.hand, Item::Hand))
+        .or_else(|| numbered(knife.rigid_body, Item::RigidBody))
+}
+
+/// Returns the item with a number in its list, counted from 1.
+fn numbered(number: Option<usize>, item: fn(usize) -> Item) -> Option<Item> {
+    number?.checked_sub(1).map(item)
+}
+
+/// Returns the number of hands that follow no other one.
+fn player_count(scene: &Scene) -> usize {
+    let leaders = scene.hand.iter().filter(|hand| hand.follows.is_none());
+    leaders.count()
 }
 
 fn basket_count(scene: &Scene) -> usize {

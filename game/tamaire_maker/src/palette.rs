@@ -1,10 +1,7 @@
 //! Crayons: materials that a drawing names by number.
 
-use fuwafuwa_scenes::scene::MaterialText;
+use fuwafuwa_scenes::scene::{MAX_MATERIALS, MaterialText};
 use tamaire_play::playground::Stuff;
-
-/// Maximum number of crayons: the number of a crayon is a byte, and 0 means empty.
-const MOST: usize = u8::MAX as usize;
 
 /// Materials of a drawing. The crayons come first, in the order of [`Stuff::ALL`]; the other materials of a body that was
 /// brought to the paper follow.
@@ -58,35 +55,67 @@ impl Palette {
             .unwrap_or([190, 180, 175])
     }
 
-    /// Returns the number of a material, and adds the material if it is new. A palette that is full returns the number
-    /// of its last material.
-    pub fn number_of(&mut self, material: &MaterialText) -> u8 {
-        number_in(&mut self.0, material, MOST)
+    /// Returns the number of a material, and adds the material if it is new. `None` if the palette is full.
+    pub fn number_of(&mut self, material: &MaterialText) -> Option<u8> {
+        number_in(&mut self.0, material)
+    }
+
+    /// Returns a palette with the crayons and with those materials whose numbers `is_used` contains, and the new number of
+    /// each material.
+    pub fn with_used(&self, is_used: &[bool; 256]) -> (Self, [u8; 256]) {
+        let mut kept = Self::default();
+        let mut numbers = [1; 256];
+        numbers[0] = 0;
+        for (number, material) in (1..=u8::MAX).zip(&self.0) {
+            if is_used[usize::from(number)] {
+                numbers[usize::from(number)] = kept.number_of(material).unwrap_or(1);
+            }
+        }
+        (kept, numbers)
     }
 }
 
-/// Returns the number of `material` in a list, counted from 1, and adds the material if it is new. A list of `most`
-/// materials takes no further one; then the last number is returned.
-pub fn number_in(list: &mut Vec<MaterialText>, material: &MaterialText, most: usize) -> u8 {
+/// Returns the number of `material` in a list, counted from 1, and adds the material if it is new. `None` if the list has
+/// as many materials as a scene may have.
+pub fn number_in(list: &mut Vec<MaterialText>, material: &MaterialText) -> Option<u8> {
     let known = list.iter().position(|known| known == material);
+    if known.is_none() && list.len() >= MAX_MATERIALS {
+        return None;
+    }
     let place = known.unwrap_or_else(|| {
-        if list.len() < most {
-            list.push(material.clone());
-        }
-        list.len().saturating_sub(1)
+        list.push(material.clone());
+        list.len() - 1
     });
-    (place + 1).min(MOST) as u8
+    u8::try_from(place + 1).ok()
+}
+
+/// Returns run lengths of cells or voxels with other numbers of materials.
+pub(crate) fn renumbered_runs(runs: &str, number: impl Fn(u8) -> u8) -> String {
+    let renumbered = |run: &str| {
+        let (length, found) = run.split_once('x')?;
+        Some(format!("{length}x{}", number(found.parse().ok()?)))
+    };
+    let runs = runs.split_ascii_whitespace();
+    let runs = runs.map(|run| renumbered(run).unwrap_or_else(|| run.to_owned()));
+    runs.collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn stiff(young: u16) -> MaterialText {
+        MaterialText {
+            young: Some(f64::from(young)),
+            ..MaterialText::default()
+        }
+    }
+
     #[test]
     fn palette_numbers_crayons_as_the_playground_does() {
         let mut palette = Palette::default();
         for stuff in Stuff::ALL {
-            assert_eq!(palette.number_of(&crayon(stuff)), stuff.number());
+            assert_eq!(palette.number_of(&crayon(stuff)), Some(stuff.number()));
         }
         assert_eq!(palette.materials().len(), Stuff::ALL.len());
     }
@@ -103,12 +132,24 @@ mod tests {
     fn full_palette_takes_no_further_material() {
         let mut palette = Palette::default();
         for young in 1..400 {
-            let material = MaterialText {
-                young: Some(f64::from(young)),
-                ..MaterialText::default()
-            };
-            assert!(palette.number_of(&material) > 0);
+            let is_full = palette.materials().len() == MAX_MATERIALS;
+            assert_eq!(palette.number_of(&stiff(young)).is_none(), is_full);
         }
-        assert_eq!(palette.materials().len(), MOST);
+        assert_eq!(palette.materials().len(), MAX_MATERIALS);
+    }
+
+    #[test]
+    fn palette_keeps_the_crayons_and_the_used_materials() {
+        let mut palette = Palette::default();
+        let crayons = palette.materials().len();
+        let [_, used, _] = [1, 2, 3].map(|young| palette.number_of(&stiff(young)).unwrap());
+        let mut is_used = [false; 256];
+        is_used[2] = true;
+        is_used[usize::from(used)] = true;
+        let (kept, numbers) = palette.with_used(&is_used);
+        assert_eq!(kept.materials().len(), crayons + 1);
+        assert_eq!(kept.materials().last(), Some(&stiff(2)));
+        assert_eq!((numbers[0], numbers[2]), (0, 2));
+        assert_eq!(usize::from(numbers[usize::from(used)]), crayons + 1);
     }
 }

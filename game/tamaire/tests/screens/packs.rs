@@ -210,7 +210,7 @@ fn pack_fills_the_list_of_own_levels_at_most() {
         .collect();
     let expected = [
         "99 new levels are under Your levels.",
-        "These did not open. 99.toml: there is only room for 100 levels",
+        "These did not open. 99.toml: There is only room for 100 levels.",
     ];
     assert_eq!(told, expected);
 }

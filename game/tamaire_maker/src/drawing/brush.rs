@@ -127,9 +127,8 @@ impl Drawing {
         let Some(index) = self.lattice.index(at) else {
             return false;
         };
-        let x = self.lattice.cell(index)[0];
         let image = match self.mirror {
-            true => index - x + (self.size()[0] - 1 - x),
+            true => self.lattice.mirrored(index),
             false => index,
         };
         let mut is_changed = false;
@@ -222,12 +221,24 @@ impl Drawing {
         }
     }
 
-    /// Takes over the cells of a drawing of the same size. This is one step of undo. Does nothing for another size.
-    pub fn replace(&mut self, other: &Self) {
+    /// Takes over the cells of a drawing of the same size. This is one step of undo. Does nothing for another size. Returns
+    /// whether a cell changed.
+    pub fn replace(&mut self, other: &Self) -> bool {
+        if self.size() != other.size() {
+            return false;
+        }
+        self.end_stroke();
+        self.cells.clone_from(&other.cells);
+        self.commit()
+    }
+
+    /// Takes over the cells of a drawing of the same size in place of those of the last step, without a further step of
+    /// undo. Does nothing for another size.
+    pub fn replace_again(&mut self, other: &Self) {
         if self.size() == other.size() {
             self.end_stroke();
             self.cells.clone_from(&other.cells);
-            self.commit();
+            self.history.amend(super::Runs::of(&self.cells));
         }
     }
 

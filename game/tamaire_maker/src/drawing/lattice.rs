@@ -41,6 +41,12 @@ impl Lattice {
         ]
     }
 
+    /// Returns the index of the mirror image of a cell in x.
+    pub(super) fn mirrored(self, index: usize) -> usize {
+        let x = self.cell(index)[0];
+        index - x + (self.size[0] - 1 - x)
+    }
+
     /// Returns the coordinates of the cell with an index.
     pub(super) fn point(self, index: usize) -> [i32; 3] {
         self.cell(index).map(|k| k as i32)

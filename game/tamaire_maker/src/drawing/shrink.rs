@@ -39,7 +39,7 @@ pub(super) fn sampled(
         .collect()
 }
 
-/// Part of a cell on one axis: its place, and its length in such units that a new cell has as many as there were cells.
+/// Overlap of an old cell with a new one on one axis: index of the old cell, and length in units of 1/`to` of an old cell.
 type Part = (usize, u64);
 
 /// Returns the parts of `from` cells that each of `to` cells covers on one axis.

@@ -85,9 +85,8 @@ impl Drawing {
             });
         let mut whole = self.clone();
         if is_half {
-            let width = self.size()[0];
             for (index, crayon) in self.cells.iter().enumerate() {
-                let mirrored = index - index % width + (width - 1 - index % width);
+                let mirrored = self.lattice.mirrored(index);
                 if whole.cells[mirrored] == 0 {
                     whole.cells[mirrored] = *crayon;
                 }

@@ -4,14 +4,14 @@ use super::bounds::grid_size;
 use super::clip::add_basket;
 use super::layers::{Stops, set_stops};
 use super::movement::room_of;
-use super::{Item, MAX_COORDINATE, bounds, first_leader, flat, rounded};
+use super::{Item, MAX_COORDINATE, bounds, first_leader, flat, player_count, rounded};
 use crate::palette::{crayon, number_in};
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{
     AxisText, BallText, BasketText, BodyText, BoxText, CapsuleText, FieldText, Form, HandText,
-    JointAnchorText, JointKindText, JointText, KnifeText, MAX_BODIES, MAX_MATERIALS, MAX_RIGID,
-    MotionTypeText, ObstacleText, RepeatText, RigidBodyText, SwitchText,
+    JointAnchorText, JointKindText, JointText, KnifeText, MAX_BODIES, MAX_RIGID, MotionTypeText,
+    ObstacleText, RepeatText, RigidBodyText, SwitchText,
 };
 use tamaire_play::PLAYERS;
 use tamaire_play::playground::Stuff;
@@ -111,9 +111,9 @@ impl Kind {
     ];
 }
 
-/// Adds something of a usual size at a position [m], which is brought into the view. Returns the new items. Returns none,
-/// and changes nothing, if it has no place: a third hand of a player, a ninth basket, a basket in a scene that is no level,
-/// or a joint in a scene without bodies and hands.
+/// Adds something of a usual size at a position [m], which is brought into the view. Returns the new items. Returns no items
+/// and changes nothing if the level cannot have it: a hand of a third player, a ninth basket, a basket in a scene that is no
+/// level, a joint without a body or hand to hold, or a body whose material has no space.
 pub fn add(scene: &mut Scene, kind: Kind, at: Vec3) -> Vec<Item> {
     if !at.is_finite() || !has_space(scene) {
         return Vec::new();
@@ -234,7 +234,9 @@ fn add_obstacle(scene: &mut Scene, text: ObstacleText) -> Vec<Item> {
 
 fn add_body(scene: &mut Scene, form: Form, stuff: Stuff, at: Vec3) -> Vec<Item> {
     let form = if form == Form::Empty { Form::Box } else { form };
-    let number = number_in(&mut scene.material, &crayon(stuff), MAX_MATERIALS);
+    let Some(number) = number_in(&mut scene.material, &crayon(stuff)) else {
+        return Vec::new();
+    };
     let mut text = BodyText {
         shape: Some(form),
         n: Some(BODY_VOXELS[usize::from(scene.dim == 3)]),
@@ -323,7 +325,7 @@ fn fixed(point: [f32; 3]) -> JointAnchorText {
     }
 }
 
-/// Adds a joint whose anchors are as far apart as it is long.
+/// Adds a joint. A rope or spring is as long as the distance between its anchors.
 fn add_joint(
     scene: &mut Scene,
     kind: JointKindText,
@@ -567,12 +569,7 @@ fn point_of_path(at: Vec3) -> [f32; 4] {
 }
 
 fn add_second_hand(scene: &mut Scene, at: Vec3) -> Vec<Item> {
-    let players = scene
-        .hand
-        .iter()
-        .filter(|hand| hand.follows.is_none())
-        .count();
-    if players >= PLAYERS {
+    if player_count(scene) >= PLAYERS {
         return Vec::new();
     }
     let hand = like_first(scene, at);

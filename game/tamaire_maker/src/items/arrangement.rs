@@ -1,13 +1,13 @@
 //! Grids and guides by which items are placed.
 
-use super::{Item, bounds, existing, items, rounded, with_followers};
+use super::{Item, bounds, existing, items, rounded, union, with_followers};
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
 
 /// Line at which moved items are aligned.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Guide {
-    /// Axis on which the line has a coordinate; it runs across it.
+    /// Axis at right angles to the line: 0, 1 or 2.
     pub axis: usize,
     /// Coordinate [m].
     pub at: f32,
@@ -25,14 +25,13 @@ pub fn snapped(value: Vec3, grid: f32) -> Vec3 {
     Vec3::from(value.to_array().map(snap))
 }
 
-/// Aligns items that are moved by `by` [m], as drawing programs do it: on each axis, an edge or the middle of the box around
-/// the items is aligned with an edge or the middle of another item or of the view, or with an upright plane, if that is
-/// within `reach` [m]. Returns the translation after that, and the lines to draw.
+/// Aligns items that are moved by `by` [m]. On each axis, an edge or the middle of the box around them moves to the nearest
+/// line within `reach` [m]. Lines are the edges and middles of other items and of the view, and planes across the axis.
+/// Returns the new translation, and the lines to draw.
 pub fn aligned(scene: &Scene, moving: &[Item], by: Vec3, reach: f32) -> (Vec3, Vec<Guide>) {
     let moving = with_followers(scene, existing(scene, moving));
     let boxes = moving.iter().filter_map(|item| bounds(scene, *item));
-    let hull = boxes
-        .reduce(|[low, high], [other_low, other_high]| [low.min(other_low), high.max(other_high)]);
+    let hull = boxes.reduce(union);
     let Some([low, high]) = hull.filter(|_| by.is_finite()) else {
         return (by, Vec::new());
     };

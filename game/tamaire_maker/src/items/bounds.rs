@@ -143,9 +143,12 @@ fn rigid_body_bounds(text: &RigidBodyText) -> Option<[Vec3; 2]> {
 
 fn joint_bounds(text: &JointText) -> Option<[Vec3; 2]> {
     let points = text.anchors.iter().map(|anchor| Vec3::from(anchor.point));
-    points
-        .map(|point| [point, point])
-        .reduce(|[low, high], [point, _]| [low.min(point), high.max(point)])
+    points.map(|point| [point, point]).reduce(union)
+}
+
+/// Returns the box around two boxes.
+pub fn union([low, high]: [Vec3; 2], [other_low, other_high]: [Vec3; 2]) -> [Vec3; 2] {
+    [low.min(other_low), high.max(other_high)]
 }
 
 fn field_bounds(text: &FieldText) -> Option<[Vec3; 2]> {
@@ -185,7 +188,7 @@ pub(super) fn grid_size(scene: &Scene, text: &BodyText) -> GridSize {
     }
     let found = text.file.as_ref().and_then(|_| known(scene, text));
     if let Some(([low, high], voxel)) = found {
-        // It was built with a width of 1 m.
+        // The known size is that of a body 1 m wide.
         return GridSize {
             widths: (high - low) * text.width,
             voxel: voxel * text.width,

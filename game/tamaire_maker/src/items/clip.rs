@@ -2,8 +2,10 @@
 
 use super::removal::bring_to_rest;
 use super::{
-    Item, existing, first_leader, holder_of_anchor, holder_of_knife, translate, with_followers,
+    Item, existing, first_leader, holder_of_anchor, holder_of_knife, player_count, translate,
+    with_followers,
 };
+use crate::palette::renumbered_runs;
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{
@@ -129,7 +131,7 @@ fn plain_basket(region: &BoxText) -> BasketText {
 /// Adds copied items to a scene, moved by a vector [m]. Returns the new items; none if the scene has another dimension.
 ///
 /// The materials of bodies are added, except those that the scene has already. An item is not pasted if a level cannot have
-/// it: a third hand of a player, an entry of a list that is full, and a joint or a knife on an item that was not pasted. A
+/// it: a hand of a third player, an entry of a list that is full, and a joint or a knife on an item that was not pasted. A
 /// switch, a body or a hand that was not copied is replaced by the one with the same number, if there is one.
 pub fn paste(scene: &mut Scene, clip: &Clip, by: Vec3) -> Vec<Item> {
     if clip.dim != scene.dim || !by.is_finite() {
@@ -170,7 +172,7 @@ impl Pasting {
     /// Returns the number of a copy by the number of its original.
     fn copy_of(&self, number: usize, item: fn(usize) -> Item) -> Option<usize> {
         let original = item(number.checked_sub(1)?);
-        self.copies.get(&original).map(|copy| index_of(*copy) + 1)
+        self.copies.get(&original).map(|copy| copy.number())
     }
 
     /// Returns the number of a copy, or the same number if there were as many in the scene before.
@@ -261,12 +263,7 @@ impl Pasting {
             .iter()
             .partition(|(_, text)| text.follows.is_none());
         for (index, text) in leaders {
-            let players = scene
-                .hand
-                .iter()
-                .filter(|hand| hand.follows.is_none())
-                .count();
-            if players < PLAYERS && scene.hand.len() < MAX_RIGID {
+            if player_count(scene) < PLAYERS && scene.hand.len() < MAX_RIGID {
                 scene.hand.push(text.clone());
                 self.add(Item::Hand(*index), Item::Hand(scene.hand.len() - 1));
             }
@@ -355,20 +352,6 @@ impl Pasting {
             };
             self.made.extend(add_basket(scene, basket));
         }
-    }
-}
-
-fn index_of(item: Item) -> usize {
-    match item {
-        Item::Body(index)
-        | Item::Obstacle(index)
-        | Item::Hand(index)
-        | Item::RigidBody(index)
-        | Item::Joint(index)
-        | Item::Knife(index)
-        | Item::Switch(index)
-        | Item::Field(index)
-        | Item::Basket(index) => index,
     }
 }
 
@@ -475,14 +458,7 @@ fn renumbered(dim: u8, text: &BodyText, count: usize, numbers: &[u8; 256]) -> Bo
         part.paint = part.paint.map(new);
     }
     if let Some(voxels) = &mut text.voxels {
-        let runs = voxels.runs.split_ascii_whitespace().map(|run| {
-            let number = run.split_once('x').and_then(|(length, number)| {
-                let number: u8 = number.parse().ok()?;
-                Some(format!("{length}x{}", new(number)))
-            });
-            number.unwrap_or_else(|| run.to_owned())
-        });
-        voxels.runs = runs.collect::<Vec<_>>().join(" ");
+        voxels.runs = renumbered_runs(&voxels.runs, new);
     }
     text
 }

@@ -86,7 +86,7 @@ impl Moved {
         }
     }
 
-    /// Turns a vector whose length stays, such as a direction, a velocity or an acceleration.
+    /// Turns a vector and keeps its length, for example a direction or a velocity.
     pub(super) fn direction(&self, vector: &mut [f32; 3]) {
         if let Motion::Turn { rotation, .. } = self.motion {
             let turned = rotation.apply(Vec3::from(*vector));
@@ -243,7 +243,7 @@ fn wrapped(angle: f32) -> f32 {
     PI - (PI - angle).rem_euclid(TAU)
 }
 
-/// Returns the axis onto which each axis is turned, or nearest to which. `None` if two axes are nearest to the same one.
+/// Returns for each axis the axis nearest to it after the rotation. `None` if two axes have the same one.
 fn permutation(rotation: Rotation) -> Option<[usize; 3]> {
     let mut target = [0; 3];
     for (axis, turned) in rotation.axes().into_iter().enumerate() {

@@ -72,7 +72,7 @@ pub fn stretch(scene: &mut Scene, items: &[Item], about: Vec3, factors: Vec3) {
     apply(scene, &chosen, motion);
 }
 
-/// Returns the centre of a stretch or a rotation, which is not so far away that coordinates lose their digits [m].
+/// Limits the centre of a stretch or a rotation, so that coordinates keep their digits [m].
 fn near_centre(dim: u8, about: Vec3) -> Vec3 {
     let most = Vec3::splat(FARTHEST_CENTRE);
     flat(dim, about.clamp(-most, most))
@@ -552,8 +552,8 @@ fn move_field(text: &mut FieldText, moved: &Moved) {
         .for_each(|acceleration| moved.direction(acceleration));
 }
 
-/// Makes rigid bodies of the obstacles whose boxes lean after a rotation. Returns the new names of all items that have
-/// another one then.
+/// Replaces obstacles whose boxes lean after a rotation with rigid bodies. Returns the new item of each item whose number
+/// changed.
 fn lean(scene: &mut Scene, moves: &Moves) -> BTreeMap<Item, Item> {
     let mut renamed = BTreeMap::new();
     let mut left = Vec::with_capacity(scene.obstacle.len());

@@ -75,10 +75,14 @@ pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
                     said,
                     words,
                     dim: scene.dim,
+                    is_full: false,
                 };
                 match item {
                     Some(item) => of_item(&mut fields, &mut scene, item),
                     None => of_level(&mut fields, &mut scene, game.settings.language),
+                }
+                if fields.is_full {
+                    game.notify(words.level_full.to_string());
                 }
                 if scene != *game.maker.draft.scene() {
                     game.preview_level(|known| *known = scene);
@@ -104,6 +108,8 @@ struct Fields<'a> {
     said: &'static Words,
     words: &'static MakingWords,
     dim: u8,
+    /// Whether a material was chosen for which the level has no space.
+    is_full: bool,
 }
 
 impl Fields<'_> {
@@ -146,23 +152,14 @@ impl Fields<'_> {
         range: [f32; 3],
         unit: &str,
     ) {
-        let [low, high, step] = range;
-        let mut shown = value.unwrap_or(high);
-        let before = shown;
-        slider_with(
-            self.ui,
-            self.theme,
-            name,
-            &mut shown,
-            [low, high, step],
-            |value| match value >= high {
-                true => without.to_string(),
-                false => format!("{value:.0}{unit}"),
-            },
-        );
-        if shown != before {
-            *value = (shown < high).then_some(shown);
-        }
+        let (known, high) = (*value, range[1]);
+        let mut shown = known.unwrap_or(high);
+        let text = |shown: f32| match limit_at(shown, known, high) {
+            Some(limit) => format!("{limit:.0}{unit}"),
+            None => without.to_string(),
+        };
+        slider_with(self.ui, self.theme, name, &mut shown, range, text);
+        *value = limit_at(shown, known, high);
     }
 
     /// Shows a slider for a share in percent.
@@ -300,9 +297,10 @@ fn body(fields: &mut Fields, scene: &mut Scene, index: usize) {
         if fields.choose(fields.said.material, &mut stuff, &options)
             && let Some(stuff) = stuff
         {
-            let most = fuwafuwa_scenes::scene::MAX_MATERIALS;
-            let number = number_in(&mut scene.material, &crayon(stuff), most);
-            scene.body[index].material = Some(number);
+            match number_in(&mut scene.material, &crayon(stuff)) {
+                Some(number) => scene.body[index].material = Some(number),
+                None => fields.is_full = true,
+            }
         }
         let most = if scene.dim == 2 { 64.0 } else { 24.0 };
         let mut n = text.n.unwrap_or(16) as f32;
@@ -418,12 +416,11 @@ fn path(fields: &mut Fields, text: &mut ObstacleText) {
     if changed != end {
         text.path = match (moves, text.path.len()) {
             (false, 0..=2) => Vec::new(),
-            (true, 0..=2) => vec![[0.0; 4], changed],
-            (_, _) => {
+            (true, 0 | 1) => vec![[0.0; 4], changed],
+            (_, length) => {
                 let mut path = std::mem::take(&mut text.path);
-                let before = path[path.len() - 2][0];
-                changed[0] = changed[0].max(before);
-                *path.last_mut().expect("the path has points") = changed;
+                changed[0] = changed[0].max(path[length - 2][0]);
+                path[length - 1] = changed;
                 path
             }
         };
@@ -660,49 +657,54 @@ enum Goal {
     Other,
 }
 
+impl Goal {
+    /// Goals that a level states with one condition.
+    const STATED: [Self; 5] = [
+        Self::Squeeze,
+        Self::Shave,
+        Self::Time,
+        Self::Whole,
+        Self::Little,
+    ];
+
+    /// Returns the goal of a level. Time and share are those of `known`, or usual ones.
+    fn wish(self, known: &Wish) -> Wish {
+        let wish = Wish::default();
+        match self {
+            Self::Squeeze => Wish {
+                route: Some(Route::Squeeze),
+                ..wish
+            },
+            Self::Shave => Wish {
+                route: Some(Route::Shave),
+                ..wish
+            },
+            Self::Time => Wish {
+                seconds: known.seconds.or(Some(10.0)),
+                ..wish
+            },
+            Self::Whole => Wish {
+                max_pieces: Some(1),
+                ..wish
+            },
+            Self::Little => Wish {
+                kept: known.kept.or(Some(0.9)),
+                ..wish
+            },
+            Self::Nothing | Self::Other => wish,
+        }
+    }
+}
+
 fn goal(fields: &mut Fields, wishes: &mut Vec<Wish>, place: usize) {
     let words = fields.words;
     let known = wishes.get(place).cloned().unwrap_or_default();
-    let only = |wish: Wish| wish == known;
-    let mut goal = match () {
-        () if place >= wishes.len() => Goal::Nothing,
-        () if only(Wish {
-            route: Some(Route::Squeeze),
-            ..Wish::default()
-        }) =>
-        {
-            Goal::Squeeze
-        }
-        () if only(Wish {
-            route: Some(Route::Shave),
-            ..Wish::default()
-        }) =>
-        {
-            Goal::Shave
-        }
-        () if only(Wish {
-            seconds: known.seconds,
-            ..Wish::default()
-        }) =>
-        {
-            Goal::Time
-        }
-        () if only(Wish {
-            max_pieces: Some(1),
-            ..Wish::default()
-        }) =>
-        {
-            Goal::Whole
-        }
-        () if only(Wish {
-            kept: known.kept,
-            ..Wish::default()
-        }) =>
-        {
-            Goal::Little
-        }
-        () => Goal::Other,
+    let mut stated = Goal::STATED.into_iter();
+    let known_goal = match place < wishes.len() {
+        true => stated.find(|goal| goal.wish(&known) == known),
+        false => Some(Goal::Nothing),
     };
+    let mut goal = known_goal.unwrap_or(Goal::Other);
     let [nothing, squeeze, shave, time, whole, little, other] = words.goals;
     let mut options = vec![
         (Goal::Nothing, nothing),
@@ -717,29 +719,7 @@ fn goal(fields: &mut Fields, wishes: &mut Vec<Wish>, place: usize) {
     }
     let name = format!("{} {}", words.goal, place + 1);
     if fields.choose(&name, &mut goal, &options) {
-        let wish = match goal {
-            Goal::Squeeze => Wish {
-                route: Some(Route::Squeeze),
-                ..Wish::default()
-            },
-            Goal::Shave => Wish {
-                route: Some(Route::Shave),
-                ..Wish::default()
-            },
-            Goal::Time => Wish {
-                seconds: Some(10.0),
-                ..Wish::default()
-            },
-            Goal::Whole => Wish {
-                max_pieces: Some(1),
-                ..Wish::default()
-            },
-            Goal::Little => Wish {
-                kept: Some(0.9),
-                ..Wish::default()
-            },
-            Goal::Nothing | Goal::Other => Wish::default(),
-        };
+        let wish = goal.wish(&known);
         match (goal, place < wishes.len()) {
             (Goal::Nothing, true) => {
                 wishes.remove(place);
@@ -772,8 +752,34 @@ fn goal(fields: &mut Fields, wishes: &mut Vec<Wish>, place: usize) {
     }
 }
 
+/// Returns the limit for which a slider with the highest value `high` stands at `shown`. `known` is the limit before, which
+/// stays as long as the slider does not move, even if it is out of its range.
+fn limit_at(shown: f32, known: Option<f32>, high: f32) -> Option<f32> {
+    known
+        .filter(|&known| known == shown)
+        .or((shown < high).then_some(shown))
+}
+
 /// Shows a row with a button.
 pub(super) fn press(ui: &mut Ui, theme: &Theme, text: &str, is_main: bool) -> bool {
     let size = vec2(ui.available_width().min(320.0), 48.0);
     button(ui, theme, text, size, ButtonStyle::of(is_main)).clicked()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limit_above_the_range_of_its_slider_stays() {
+        for (shown, known, expected) in [
+            (5000.0, Some(5000.0), Some(5000.0)),
+            (2000.0, Some(2000.0), Some(2000.0)),
+            (2000.0, None, None),
+            (2000.0, Some(600.0), None),
+            (600.0, None, Some(600.0)),
+        ] {
+            assert_eq!(limit_at(shown, known, 2000.0), expected);
+        }
+    }
 }
