@@ -31,10 +31,12 @@ pub enum Finding {
     /// The check is not finished.
     #[default]
     Open,
-    /// It is the case; for a win with its shortest time [s].
+    /// Confirmed; for a win, with the shortest time [s].
     Yes(Option<f32>),
-    /// No bot has found it. A person may.
+    /// Not confirmed: no bot won in this way, or the level is too slow.
     NotFound,
+    /// Not checked, because the level does not have this way to win.
+    NotAsked,
 }
 
 /// Results of the checks.
@@ -42,11 +44,11 @@ pub enum Finding {
 pub struct Findings {
     /// Whether the body can be squeezed in.
     pub squeezed: Finding,
-    /// Whether it can be shaved to fit.
+    /// Whether the body can be shaved to fit.
     pub shaved: Finding,
-    /// Whether a bot wins that only pushes straight, so that the level may be too simple.
+    /// Whether a bot that only pushes straight wins. If so, the level may be too easy.
     pub straight: Finding,
-    /// Whether small machines, half as fast as this one, compute it in real time.
+    /// Whether a machine half as fast as this one computes the level in real time.
     pub real_time: Finding,
 }
 
@@ -83,11 +85,11 @@ impl Check {
             }
         } else {
             left.push((Player::Bot(BotKind::Random), SEEDS[0]));
-            findings.squeezed = Finding::NotFound;
-            findings.straight = Finding::NotFound;
+            findings.squeezed = Finding::NotAsked;
+            findings.straight = Finding::NotAsked;
         }
         if !left.iter().any(|(player, _)| *player == shave) {
-            findings.shaved = Finding::NotFound;
+            findings.shaved = Finding::NotAsked;
         }
         Self {
             level,
@@ -126,7 +128,7 @@ impl Check {
         ((self.all - waiting) as f32 + share) / self.all as f32
     }
 
-    /// Goes on with the checks for about `budget` [s], as measured with `now`, the time since any moment [s].
+    /// Continues the checks for about `budget` [s]. `now` returns the time since a fixed moment [s].
     pub fn go_on(&mut self, budget: f64, now: impl Fn() -> f64) {
         let began = now();
         while !self.is_done() && now() - began < budget {
@@ -173,7 +175,7 @@ impl Check {
     }
 
     fn begin_next(&mut self) {
-        // A way that is known need not be found again.
+        // Skips a bot whose result is known.
         let is_known = |player: Player| match player {
             Player::Bot(BotKind::Squeeze) => self.findings.squeezed != Finding::Open,
             Player::Bot(BotKind::Shave) => self.findings.shaved != Finding::Open,
@@ -266,7 +268,9 @@ mod tests {
         let check = checked("sandbox", 0.012);
         let findings = check.findings();
         assert_eq!(findings.real_time, Finding::NotFound);
-        assert_eq!(findings.squeezed, Finding::NotFound);
+        for finding in [findings.squeezed, findings.shaved, findings.straight] {
+            assert_eq!(finding, Finding::NotAsked);
+        }
         assert_eq!(check.progress(), 1.0);
     }
 }

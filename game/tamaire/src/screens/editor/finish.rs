@@ -87,20 +87,22 @@ fn checks(game: &mut Game, ui: &mut Ui, theme: &Theme) {
         return;
     };
     let told = |finding: Finding, name: &str| match finding {
-        Finding::Open => ("…", name.to_string(), theme.faint),
-        Finding::Yes(None) => ("✓", name.to_string(), theme.good),
+        Finding::Open => Some(("…", name.to_string(), theme.faint)),
+        Finding::Yes(None) => Some(("✓", name.to_string(), theme.good)),
         Finding::Yes(Some(seconds)) => {
             let time = (said.seconds)(seconds);
-            ("✓", format!("{name}  {time}"), theme.good)
+            Some(("✓", format!("{name}  {time}"), theme.good))
         }
-        Finding::NotFound => ("–", format!("{name}: {}", words.not_found), theme.ink),
+        Finding::NotFound => Some(("–", format!("{name}: {}", words.not_found), theme.ink)),
+        Finding::NotAsked => None,
     };
     let findings = check.findings();
     if check.level().has_basket() {
         let [squeezed, shaved] = words.can_be;
         for (finding, name) in [(findings.squeezed, squeezed), (findings.shaved, shaved)] {
-            let (sign, text, ink) = told(finding, name);
-            line(ui, sign, &text, ink);
+            if let Some((sign, text, ink)) = told(finding, name) {
+                line(ui, sign, &text, ink);
+            }
         }
         match won {
             Some(seconds) => {
@@ -121,11 +123,13 @@ fn checks(game: &mut Game, ui: &mut Ui, theme: &Theme) {
     if !check.level().has_basket() {
         line(ui, "–", words.is_playground, theme.ink);
     }
-    let (sign, text, ink) = match findings.real_time {
-        Finding::NotFound => ("!", words.not_real_time.to_string(), theme.accent),
+    let speed = match findings.real_time {
+        Finding::NotFound => Some(("!", words.not_real_time.to_string(), theme.accent)),
         finding => told(finding, words.real_time),
     };
-    line(ui, sign, &text, ink);
+    if let Some((sign, text, ink)) = speed {
+        line(ui, sign, &text, ink);
+    }
     if !check.is_done() {
         progress(ui, theme, check);
     }
