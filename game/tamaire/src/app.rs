@@ -465,13 +465,13 @@ impl eframe::App for App {
         Some(self)
     }
 
-    /// Closes the stand and the files before the window closes. On some systems the program ends with its
+    /// Closes the stand, keeps the level in the editor and closes the files before the window closes. On some systems the program ends with its
     /// last window without running destructors.
     fn on_exit(&mut self) {
         if let Some(attendant) = &mut self.attendant {
             attendant.close(&mut self.game);
         }
-        self.game.files.close();
+        self.game.close();
     }
 }
 

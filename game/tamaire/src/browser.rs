@@ -98,11 +98,11 @@ impl Running {
         })
     }
 
-    /// Writes pending data. Called when the page is hidden, because a hidden page may be closed without
+    /// Keeps the level in the editor and writes pending data. Called when the page is hidden, because a hidden page may be closed without
     /// notice.
     pub fn flush(&self) {
         if let Some(mut app) = self.runner.app_mut::<App>() {
-            app.game.finish_writing();
+            app.game.flush();
         }
     }
 

@@ -28,16 +28,16 @@ mod watching;
 use crate::attract::attract;
 use crate::input::{Action, InputSource};
 use crate::journey::{Journey, Lock, Section};
-use crate::platform::{Damage, Dialog, DialogResult, Files, OpenRequest, Sound};
+use crate::platform::{Damage, Dialog, DialogResult, Files, MOST_LEVELS, OpenRequest, Sound};
 use crate::records::Records;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::words::{MakingWords, Words};
+use crate::words::{Language, MakingWords, Words};
 use app_shell::{Clock, Forces, Pads, Theme};
 pub use bout::CurrentRound;
 pub use controls::{Controls, ScreenButton};
 use drawing::DrawingWatch;
-pub use editing::{Drag, Editor, EditorPart, GRID};
+pub use editing::{Drag, Editor, EditorPart, GRID, TURN};
 pub use ending::Ending;
 use fuwafuwa::DEFAULT_TICK;
 pub use making::{Cursor, DrawingTool, Flaws, Maker, WIDTHS};
@@ -48,7 +48,7 @@ pub use sharing::{MOST_NAME, credits};
 pub use shelf::{RoundDetails, SavedRound, SavedRounds};
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use tamaire_play::daily::{is_daily, level_of};
+use tamaire_play::daily::level_of;
 use tamaire_play::level::{LevelError, built_in};
 use tamaire_play::{Assist, Level, Playback, Replay, ReplayError};
 use tamaire_sound::{Cue, Menu};
@@ -190,10 +190,7 @@ impl Game {
 
     /// Returns what is wrong with a level, in words for its maker.
     pub fn told(&self, error: &LevelError) -> String {
-        match error {
-            LevelError::NoGame { field: "body", .. } => self.making().body_outside.to_string(),
-            error => (self.words().level_error)(error),
-        }
+        told(self.settings.language, error)
     }
 
     /// Returns the colour theme.
@@ -243,13 +240,26 @@ impl Game {
 
     /// Opens a screen, or returns to it if it is open.
     pub fn go(&mut self, screen: Screen) {
-        self.screens.go(screen);
-        self.arrive();
+        self.change_screens(|screens| screens.go(screen));
     }
 
     /// Closes the visible screen.
     pub fn go_back(&mut self) {
-        self.screens.close(self.screen());
+        self.close_screen(self.screen());
+    }
+
+    /// Closes a screen and all screens above it.
+    fn close_screen(&mut self, screen: Screen) {
+        self.change_screens(|screens| screens.close(screen));
+    }
+
+    /// Changes the open screens. A level whose editor is closed by the change is kept if possible.
+    fn change_screens(&mut self, change: impl FnOnce(&mut Screens)) {
+        let was_editing = self.screens.has(Screen::Editor);
+        change(&mut self.screens);
+        if was_editing && !self.screens.has(Screen::Editor) {
+            self.keep_left_level();
+        }
         self.arrive();
     }
 
@@ -260,8 +270,7 @@ impl Game {
             let level = self.bout.round().level().clone();
             return self.play(&level);
         }
-        self.screens.close(Screen::Play);
-        self.arrive();
+        self.close_screen(Screen::Play);
     }
 
     /// Adapts the state to a newly visible screen; for example, ends single steps, key binding and device
@@ -520,23 +529,25 @@ impl Game {
         self.notify(format!("{name}: {reason}"));
     }
 
-    pub(super) fn offer(&mut self, mut level: Level) {
-        level.id = sharing::foreign_id(&level.id);
+    /// Adds a level from a file to those of the player, and starts it. A level that the game has is not added again.
+    fn offer(&mut self, level: Level) {
+        // A stored level that is still being read is one that the game has, too.
+        for news in self.files.await_levels() {
+            self.tell(news);
+        }
         let notes = level.scene().notes().iter();
         let notes: Vec<String> = notes.map(self.words().import_note).collect();
-        let known = self.levels.iter().position(|known| **known == level);
-        let index = known.unwrap_or_else(|| {
-            if is_daily(&level) {
-                // A level of the day that was sent stays, and does not take the place of today's.
-                level.id = format!("sent-{}", level.id);
+        let index = match (self.place_of_scene(&level), self.place_of_earlier(&level)) {
+            (Some(index), _) => index,
+            (None, Some(index)) => {
+                self.replace_own(index, level);
+                index
             }
-            self.levels.retain(|known| known.id != level.id);
-            self.levels.push(Arc::new(level));
-            self.levels.len() - 1
-        });
-        if self.is_own(index) {
-            self.files.keep_level(self.levels[index].clone());
-        }
+            (None, None) if self.has_all_own_levels() => {
+                return self.notify((self.making().own_full)(MOST_LEVELS));
+            }
+            (None, None) => self.add_own(level),
+        };
         self.start(index);
         notes.into_iter().for_each(|note| self.notify(note));
     }
@@ -677,5 +688,13 @@ impl Game {
         if self.screen() == Screen::Play && self.bout.session.is_played() && !goes_on {
             self.go(Screen::Paused);
         }
+    }
+}
+
+/// Returns what is wrong with a level, in words for its maker.
+fn told(language: Language, error: &LevelError) -> String {
+    match error {
+        LevelError::NoGame { field: "body", .. } => language.making().body_outside.to_string(),
+        error => (language.words().level_error)(error),
     }
 }

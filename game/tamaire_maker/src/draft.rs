@@ -2,6 +2,7 @@
 
 use crate::document::{merged, written};
 use crate::history::History;
+use crate::items::items;
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::GameText;
 use std::sync::Arc;
@@ -10,6 +11,9 @@ use tamaire_play::level::LevelError;
 
 /// Maximum length of the name of a level [characters].
 pub const MAX_NAME: usize = 60;
+
+/// Maximum size of the steps of undo [bytes].
+const MAX_HISTORY: usize = 256 << 20;
 
 /// Name of a new level as long as it has no other one.
 const NEW: &str = "new-level";
@@ -61,6 +65,16 @@ impl Draft {
         Self::new(NEW, scene.clone(), Some((text.to_owned(), scene)))
     }
 
+    /// Changes the scene, and makes it the start of the history.
+    pub fn restart(&mut self, change: impl FnOnce(&mut Scene)) {
+        let mut scene = self.scene().clone();
+        change(&mut scene);
+        let scene = Arc::new(scene);
+        self.start = scene.clone();
+        self.history = History::new(scene);
+        self.preview = None;
+    }
+
     fn new(id: &str, scene: Scene, source: Option<(String, Scene)>) -> Self {
         let scene = Arc::new(scene);
         Self {
@@ -82,7 +96,7 @@ impl Draft {
         self.id = id.to_owned();
     }
 
-    /// Returns the scene as it is shown: with what is being dragged.
+    /// Returns the scene with the preview.
     pub fn scene(&self) -> &Scene {
         self.preview.as_deref().unwrap_or(self.history.present())
     }
@@ -92,8 +106,24 @@ impl Draft {
         self.settle();
         let mut scene = Scene::clone(self.history.present());
         let result = change(&mut scene);
-        self.history.commit(Arc::new(scene));
+        self.commit(Arc::new(scene));
         result
+    }
+
+    fn commit(&mut self, scene: Arc<Scene>) {
+        self.history.commit(scene);
+        self.history
+            .forget_beyond(MAX_HISTORY, |scene| size_of(scene));
+    }
+
+    /// Makes a change that is no step of undo. A preview is settled before.
+    pub fn amend(&mut self, change: impl FnOnce(&mut Scene)) {
+        self.settle();
+        let mut scene = Scene::clone(self.history.present());
+        change(&mut scene);
+        if scene != **self.history.present() {
+            self.history.amend(Arc::new(scene));
+        }
     }
 
     /// Shows a change of the scene as it was before the preview, in place of an earlier preview. It is no step of undo
@@ -110,16 +140,21 @@ impl Draft {
         let Some(scene) = self.preview.take() else {
             return false;
         };
-        self.history.commit(scene);
+        self.commit(scene);
         true
     }
 
-    /// Returns the scene as it is shown. Equal pointers mean equal scenes.
+    /// Forgets the preview.
+    pub fn forget_preview(&mut self) {
+        self.preview = None;
+    }
+
+    /// Returns the scene with the preview. Equal pointers mean equal scenes.
     pub fn shared_scene(&self) -> &Arc<Scene> {
         self.preview.as_ref().unwrap_or(self.history.present())
     }
 
-    /// Returns the scene without what is being dragged.
+    /// Returns the scene without the preview.
     pub fn scene_before(&self) -> &Scene {
         self.history.present()
     }
@@ -165,20 +200,12 @@ impl Draft {
 
     /// Returns the name in a language; empty without one.
     pub fn name(&self, language: Language) -> &str {
-        let name = self.scene().game.as_ref().map(|game| &game.name);
-        match language {
-            Language::English => name.map_or("", |name| &name.en),
-            Language::Japanese => name.and_then(|name| name.ja.as_deref()).unwrap_or_default(),
-        }
+        name_in(self.scene(), language)
     }
 
     /// Returns the name in a language with which the draft began; empty without one.
     pub fn first_name(&self, language: Language) -> &str {
-        let name = self.start.game.as_ref().map(|game| &game.name);
-        match language {
-            Language::English => name.map_or("", |name| &name.en),
-            Language::Japanese => name.and_then(|name| name.ja.as_deref()).unwrap_or_default(),
-        }
+        name_in(&self.start, language)
     }
 
     /// Sets the name of the maker. `None` removes it.
@@ -196,17 +223,52 @@ impl Draft {
         self.change(|scene| scene.game.as_mut().map(change));
     }
 
-    /// Sets the name in a language. Control characters and spaces around it are removed, and it is cut to
-    /// [`MAX_NAME`] characters. An empty Japanese name is removed. A level with an empty English name cannot be played.
-    pub fn set_name(&mut self, language: Language, name: &str) {
-        let shown: String = name.chars().filter(|letter| !letter.is_control()).collect();
-        let cut: String = shown.trim().chars().take(MAX_NAME).collect();
-        let name = cut.trim_end().to_owned();
-        self.change_game(|game| match language {
-            Language::English => game.name.en = name,
-            Language::Japanese => game.name.ja = Some(name).filter(|name| !name.is_empty()),
+    /// Shows names as a preview, so that typing a name is one step of undo. Names in other languages stay as they were
+    /// before the preview. Each name is set as by [`set_name`].
+    pub fn set_names(&mut self, names: &[(Language, &str)]) {
+        self.preview(|scene| {
+            for &(language, name) in names {
+                set_name(scene, language, name);
+            }
         });
     }
+}
+
+/// Returns the name of a scene in a language; empty without one.
+pub fn name_in(scene: &Scene, language: Language) -> &str {
+    let name = scene.game.as_ref().map(|game| &game.name);
+    match language {
+        Language::English => name.map_or("", |name| &name.en),
+        Language::Japanese => name.and_then(|name| name.ja.as_deref()).unwrap_or_default(),
+    }
+}
+
+/// Sets the name of a level in a language. Control characters and spaces around it are removed, and it is cut to
+/// [`MAX_NAME`] characters. An empty Japanese name is removed. A level with an empty English name cannot be played.
+pub fn set_name(scene: &mut Scene, language: Language, name: &str) {
+    let Some(game) = &mut scene.game else {
+        return;
+    };
+    let shown: String = name.chars().filter(|letter| !letter.is_control()).collect();
+    let cut: String = shown.trim().chars().take(MAX_NAME).collect();
+    let name = cut.trim_end().to_owned();
+    match language {
+        Language::English => game.name.en = name,
+        Language::Japanese => game.name.ja = Some(name).filter(|name| !name.is_empty()),
+    }
+}
+
+/// Returns about how much memory a scene takes [bytes].
+fn size_of(scene: &Scene) -> usize {
+    /// Size of an entry of a list without its texts [bytes].
+    const ENTRY: usize = 512;
+    let texts = scene.body.iter().map(|body| {
+        let content = body.content.as_ref().map_or(0, String::len);
+        let state = body.state.as_ref().map_or(0, String::len);
+        content + state + body.voxels.as_ref().map_or(0, |voxels| voxels.runs.len())
+    });
+    let entries = items(scene).len() + scene.material.len();
+    texts.sum::<usize>() + ENTRY * (entries + 1)
 }
 
 #[cfg(test)]

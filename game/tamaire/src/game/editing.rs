@@ -1,19 +1,19 @@
 //! Editing of a level: selection, drags, and the room that shows the level.
 
-use super::sharing::{is_made_here, origin_of};
+use super::sharing::{append_to_names, is_made_here, origin_of};
 use super::{Game, Screen};
 use crate::session::Session;
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
 use std::sync::Arc;
-use tamaire_maker::draft::{Draft, Language};
+use tamaire_maker::draft::Draft;
 use tamaire_maker::items::{self, Clip, Dropped, Guide, Item, Kind};
 use tamaire_play::Level;
 
 /// Distance between two lines of the grid to which things snap [m].
 pub const GRID: f32 = 0.05;
-/// Angle by which a button turns things [rad].
-const TURN: f32 = std::f32::consts::PI / 12.0;
+/// Angle of a step in which things turn [rad].
+pub const TURN: f32 = std::f32::consts::PI / 12.0;
 /// Factor by which a button makes things larger.
 const LARGER: f32 = 1.15;
 /// Distance of a pasted copy from its original [m].
@@ -30,7 +30,7 @@ pub enum EditorPart {
     /// Things to add.
     #[default]
     Things,
-    /// What can be done with the selection.
+    /// Actions on the selection.
     Selection,
 }
 
@@ -39,7 +39,7 @@ pub enum EditorPart {
 pub struct Editor {
     /// Selected items.
     pub selection: Vec<Item>,
-    /// What was copied.
+    /// Copied items.
     clip: Option<Clip>,
     /// Whether a press adds to the selection.
     pub is_adding: bool,
@@ -81,7 +81,15 @@ pub enum Drag {
 }
 
 impl Editor {
-    /// Notes that the round in the room is no test, or no longer.
+    /// Creates the state at the start of the game.
+    pub(super) fn new() -> Self {
+        Self {
+            snaps: true,
+            ..Self::default()
+        }
+    }
+
+    /// Notes that the round in the room is not a test.
     pub(super) fn end_test(&mut self) {
         (self.is_test, self.returns) = (false, false);
     }
@@ -108,7 +116,11 @@ impl Editor {
 impl Game {
     /// Opens the editor with a level of the list.
     pub fn edit(&mut self, index: usize) {
-        let level = self.levels[index].clone();
+        let mut level = self.levels[index].clone();
+        self.keep_replaced_level();
+        if let Some(newer) = self.levels.iter().find(|newer| newer.id == level.id) {
+            level = newer.clone();
+        }
         self.edit_level(&level);
         if is_made_here(&level.id) {
             self.maker.origin = None;
@@ -118,6 +130,7 @@ impl Game {
 
     /// Opens the editor with a copy of a level, or with an own level itself.
     pub fn edit_level(&mut self, level: &Level) {
+        self.keep_replaced_level();
         let text = self.text_of(level);
         self.maker.draft = Draft::of_level(level, text.as_deref());
         self.begin_editing(Some(origin_of(level)));
@@ -125,6 +138,7 @@ impl Game {
 
     /// Opens the editor with an empty room in 2D or 3D.
     pub fn edit_blank(&mut self, dim: u8) {
+        self.keep_replaced_level();
         self.maker.draft = Draft::blank(dim);
         self.number_name();
         self.begin_editing(None);
@@ -164,6 +178,7 @@ impl Game {
 
     /// Opens the editor with the room of the drawing.
     pub fn edit_room(&mut self) {
+        self.keep_replaced_level();
         self.maker.take_room();
         self.number_name();
         self.begin_editing(None);
@@ -178,7 +193,6 @@ impl Game {
         maker.origin = origin;
         maker.saved = Some(maker.draft.scene().clone());
         maker.editor.reset();
-        maker.editor.snaps = true;
         self.go(Screen::Editor);
     }
 
@@ -187,10 +201,9 @@ impl Game {
         let made = self.levels.iter().filter(|level| is_made_here(&level.id));
         let number = made.count() + 1;
         if number > 1 {
-            for language in [Language::English, Language::Japanese] {
-                let name = format!("{} {number}", self.maker.draft.name(language));
-                self.maker.draft.set_name(language, &name);
-            }
+            let ending = format!(" {number}");
+            let draft = &mut self.maker.draft;
+            draft.restart(|scene| append_to_names(scene, &ending));
         }
     }
 
@@ -238,6 +251,15 @@ impl Game {
             if let Some(turned) = self.maker.editor.turned.take() {
                 self.maker.editor.selection = turned;
             }
+            self.settle();
+        }
+    }
+
+    /// Ends a drag without its change.
+    pub fn drop_drag(&mut self) {
+        if self.maker.editor.drag.take().is_some() {
+            self.maker.draft.forget_preview();
+            self.maker.editor.turned = None;
             self.settle();
         }
     }
@@ -373,7 +395,7 @@ impl Game {
         let editor = &self.maker.editor;
         let selection = editor.turned.as_ref().unwrap_or(&editor.selection).iter();
         let boxes = selection.filter_map(|&item| items::bounds(scene, item));
-        boxes.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
+        boxes.reduce(items::union)
     }
 
     /// Returns a displacement of the selection by which bodies, hands and baskets stay in the view.

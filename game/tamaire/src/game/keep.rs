@@ -17,14 +17,21 @@ impl Game {
         self.files.save_replay(self.bout.round().replay());
     }
 
-    /// If a round is being played, saves a replay of it, writes all pending data, and returns to the title.
-    /// Called when the GPU is lost.
+    /// Keeps the level in the editor, saves a replay of a round that is being played and returns to the title, and writes
+    /// all pending data. Called when the GPU is lost.
     pub fn rescue(&mut self) {
+        self.keep_silently();
         if self.is_in_round() {
             self.keep_replay();
             self.go(Screen::Title);
-            self.files.close();
         }
+        self.files.close();
+    }
+
+    /// Keeps the level in the editor, and writes all pending data at the end of the program.
+    pub fn close(&mut self) {
+        self.keep_silently();
+        self.files.close();
     }
 
     /// Saves a photo of the end of the round.
@@ -97,6 +104,12 @@ impl Game {
         if let Err(error) = self.files.open_folder_of(location) {
             self.notify(format!("{} {error}", self.words().folder_not_opened));
         }
+    }
+
+    /// Keeps the level in the editor and writes all pending data, for a page that may be closed without notice.
+    pub fn flush(&mut self) {
+        self.keep_silently();
+        self.finish_writing();
     }
 
     /// Writes all pending data and waits until it is written.

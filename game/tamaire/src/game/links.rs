@@ -38,24 +38,28 @@ impl Game {
         self.go(Screen::Offered);
     }
 
-    /// Whether the game has a level.
+    /// Whether the game has a level, perhaps under another id.
     pub fn knows(&self, level: &Level) -> bool {
-        self.listed(level).is_some()
+        self.place_of_known(level).is_some()
+    }
+
+    /// Returns the index in [`Game::levels`] of a level that the game has, perhaps under another id or without its assists.
+    fn place_of_known(&self, level: &Level) -> Option<usize> {
+        self.listed(level).or_else(|| self.place_of_scene(level))
     }
 
     /// Plays the level that is offered, and keeps it.
     pub fn play_offered(&mut self) {
-        if let Some((_, level)) = self.offered.take() {
-            let known = self.levels.iter().position(|known| *known == level);
-            if known.is_none() && self.has_all_own_levels() {
-                return self.notify((self.making().own_full)(MOST_LEVELS));
-            }
-            let index = known.unwrap_or_else(|| {
-                self.add_own(Level::clone(&level));
-                self.levels.len() - 1
-            });
-            self.start(index);
+        let Some((_, level)) = self.offered.clone() else {
+            return;
+        };
+        let known = self.place_of_known(&level);
+        if known.is_none() && self.has_all_own_levels() {
+            return self.notify((self.making().own_full)(MOST_LEVELS));
         }
+        self.offered = None;
+        let index = known.unwrap_or_else(|| self.add_own(Level::clone(&level)));
+        self.start(index);
     }
 
     /// Tells the player whether copying to the clipboard worked.
@@ -69,8 +73,10 @@ impl Game {
     /// Opens a link: a level that the game has is started; another one, and a round, is offered.
     pub fn open_link(&mut self, link: &str) {
         match Link::read(link) {
-            Ok(Link::Level(level)) if self.listed(&level).is_some() => self.offer(*level),
-            Ok(Link::Level(level)) => self.show_offer(None, *level),
+            Ok(Link::Level(level)) => match self.place_of_known(&level) {
+                Some(index) => self.start(index),
+                None => self.show_offer(None, *level),
+            },
             Ok(Link::Round(replay)) => match replay.level() {
                 Ok(level) => self.show_offer(Some(Arc::from(replay)), level),
                 Err(error) => self.notify((self.words().replay_error)(&error)),

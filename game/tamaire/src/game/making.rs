@@ -172,7 +172,7 @@ impl Default for Maker {
             draft: Draft::blank(2),
             target: Target::Room,
             cell: None,
-            editor: Editor::default(),
+            editor: Editor::new(),
             picture: None,
             typed_name: None,
             saved: Some(Draft::blank(2).scene().clone()),

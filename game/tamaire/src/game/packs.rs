@@ -1,6 +1,6 @@
 //! Packs: adding their levels to those of the player, and saving all levels of the player as one.
 
-use super::sharing::foreign_id;
+use super::sharing::{foreign_id, is_made_here};
 use super::{Game, Screen};
 use crate::platform::MOST_LEVELS;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ impl Game {
         let (first, mut known) = (self.levels.len(), 0);
         let mut room = MOST_LEVELS.saturating_sub(self.own_levels().count());
         for level in levels {
-            if self.has_scene_of(&level) {
+            if self.place_of_scene(&level).is_some() {
                 known += 1;
             } else if room == 0 {
                 refused.push(refusal(&level.id, &(words.own_full)(MOST_LEVELS)));
@@ -80,21 +80,37 @@ impl Game {
         self.own_levels().count() >= MOST_LEVELS
     }
 
-    /// Whether the game has the level, perhaps under another id.
-    fn has_scene_of(&self, level: &Level) -> bool {
+    /// Returns the index in [`Game::levels`] of a level with the same scene, perhaps under another id.
+    pub(super) fn place_of_scene(&self, level: &Level) -> Option<usize> {
         let mut scenes = self.levels.iter().map(|known| known.scene());
-        scenes.any(|scene| scene == level.scene())
+        scenes.position(|scene| scene == level.scene())
     }
 
-    /// Stores a level under an id that is free.
-    pub(super) fn add_own(&mut self, mut level: Level) {
-        if is_daily(&level) {
-            level.id = format!("sent-{}", level.id);
+    /// Returns the index in [`Game::levels`] of an earlier version of a level from a file. Levels of several makers have
+    /// the ids of levels that were made here, so these do not tell that a level is an earlier version.
+    pub(super) fn place_of_earlier(&self, level: &Level) -> Option<usize> {
+        if is_made_here(&level.id) {
+            return None;
         }
-        level.id = pack::free_id(&foreign_id(&level.id), |id| self.is_taken(id));
+        let id = stored_id(level);
+        (0..self.levels.len()).find(|&index| self.is_own(index) && self.levels[index].id == id)
+    }
+
+    /// Stores a level in place of another own one, under its id.
+    pub(super) fn replace_own(&mut self, index: usize, mut level: Level) {
+        level.id.clone_from(&self.levels[index].id);
+        let level = Arc::new(level);
+        self.levels[index] = level.clone();
+        self.files.keep_level(level);
+    }
+
+    /// Stores a level under an id that is free. Returns its index in [`Game::levels`].
+    pub(super) fn add_own(&mut self, mut level: Level) -> usize {
+        level.id = pack::free_id(&stored_id(&level), |id| self.is_taken(id));
         let level = Arc::new(level);
         self.levels.push(level.clone());
         self.files.keep_level(level);
+        self.levels.len() - 1
     }
 
     /// Whether a level has this id. Some file systems do not distinguish upper and lower case.
@@ -103,6 +119,15 @@ impl Game {
         let known = self.levels.iter().chain(removed);
         let mut ids = known.map(|level| level.id.to_lowercase());
         ids.any(|known| known == id.to_lowercase()) || self.files.level_text(id).is_some()
+    }
+}
+
+/// Returns the id under which a level from elsewhere is stored, if it is free. A level of the day that was sent does not take
+/// the place of today's.
+fn stored_id(level: &Level) -> String {
+    match is_daily(level) {
+        true => format!("sent-{}", level.id),
+        false => foreign_id(&level.id),
     }
 }
 

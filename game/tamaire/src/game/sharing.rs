@@ -1,13 +1,13 @@
 //! Checking, keeping and sending of levels that the player makes.
 
-use super::{Game, Maker, Screen};
+use super::{Game, Maker, Screen, told};
 use crate::platform::{MOST_LEVELS, address_of_page};
 use crate::qr::Code;
 use crate::words::MakingWords;
 use fuwafuwa_scenes::Scene;
 use std::sync::Arc;
 use tamaire_maker::check::Check;
-use tamaire_maker::draft::{Draft, Language};
+use tamaire_maker::draft::{Draft, Language, name_in, set_name};
 use tamaire_play::level::{LevelError, MAX_KEPT_BYTES};
 use tamaire_play::pack::without_marks;
 use tamaire_play::{Level, Replay};
@@ -16,8 +16,8 @@ use tamaire_play::{Level, Replay};
 pub const MOST_NAME: usize = 40;
 /// Beginning of the ids of levels that the player makes. Levels from elsewhere get other ids.
 const MADE_HERE: &str = "my-level-";
-/// Share of a frame in which checks are computed, and the least and most time for that [s]. On a machine that draws slowly,
-/// frames are long, and the checks get on nevertheless.
+/// Share of a frame for the checks, and the minimum and maximum of this time [s]. It grows with the frame, so that checks
+/// advance on slow machines, too.
 const BUDGET: (f64, [f64; 2]) = (0.6, [0.008, 0.15]);
 
 /// Whether a level with this id was made by the player of this game.
@@ -33,15 +33,16 @@ pub(super) fn foreign_id(id: &str) -> String {
     }
 }
 
-/// What the page *Finish* shows of a level, computed once for each scene.
+/// Summary of a level for the page *Finish*, computed once for each scene.
 pub struct Summary {
     scene: Arc<Scene>,
     /// The level, or why it cannot be played.
     pub level: Result<Arc<Level>, LevelError>,
     /// Shortest time in which its maker has won it [s].
     pub won: Option<f32>,
-    /// QR code of the link to it, once it was asked for. The inner `None` = the level is too large for one.
-    code: Option<Option<Code>>,
+    /// QR code of the link to the level, and the name of the maker in it, after the code was shown. The inner `None` = the
+    /// level is too large for a code.
+    code: Option<(String, Option<Code>)>,
 }
 
 impl Maker {
@@ -94,22 +95,22 @@ impl Game {
     }
 
     /// Names the level that is being edited, in the language of the player. In the other language it gets the same name,
-    /// unless the player has given it another one there.
+    /// unless the player has given it another one there. The name is a preview, see [`Game::settle_preview`].
     pub fn name_draft(&mut self, name: &str) {
         let language = self.language_of_names();
         let other = match language {
             Language::English => Language::Japanese,
             Language::Japanese => Language::English,
         };
-        let draft = &mut self.maker.draft;
+        let draft = &self.maker.draft;
         let follows = draft.name(other).is_empty()
             || draft.name(other) == draft.name(language)
             || draft.name(other) == draft.first_name(other);
-        draft.set_name(language, name);
-        if follows {
-            // Without a Japanese name, the English one is shown.
-            draft.set_name(other, if other == Language::English { name } else { "" });
-        }
+        // Without a Japanese name, the English one is shown.
+        let other_name = if other == Language::English { name } else { "" };
+        let names = [(language, name), (other, other_name)];
+        let count = if follows { 2 } else { 1 };
+        self.maker.draft.set_names(&names[..count]);
     }
 
     fn language_of_names(&self) -> Language {
@@ -121,10 +122,12 @@ impl Game {
 
     /// Notes that the maker has won the level, if the round is a test of it.
     pub(super) fn note_test_win(&mut self) {
+        if !self.is_test() {
+            return;
+        }
         let level = self.bout.round().level().clone();
         let tested = self.maker.summary().level.as_ref().ok();
-        let is_tested = tested.is_some_and(|tested| tested.differs_only_in_names(&level));
-        if !self.is_test() || !is_tested {
+        if !tested.is_some_and(|tested| tested.differs_only_in_names(&level)) {
             return;
         }
         let replay = self.bout.round().replay();
@@ -160,45 +163,45 @@ impl Game {
         if self.maker.draft.name(Language::English).trim().is_empty() {
             return Some(self.making().needs_name.to_string());
         }
-        let level = &self.maker.summary().level;
-        let is_outside = matches!(level, Err(LevelError::NoGame { field: "body", .. }));
-        let told = self.words().level_error;
-        match &self.maker.summary().level {
-            Ok(_) => None,
-            Err(_) if is_outside => Some(self.making().body_outside.to_string()),
-            Err(error) => Some(told(error)),
-        }
+        let language = self.settings.language;
+        let level = self.maker.summary().level.as_ref();
+        level.err().map(|error| told(language, error))
     }
 
-    /// Returns the level that is being edited with the names of its maker and of its origin, ready to be kept.
-    fn finished(&mut self) -> Option<Level> {
+    /// Returns the level that is being edited with the names of its maker and of its origin, ready to be kept. If it is not
+    /// finished, returns the reason in words for its maker.
+    fn finished(&mut self) -> Result<Level, String> {
         self.maker.draft.settle();
         if let Some(problem) = self.draft_problem() {
-            self.notify(problem);
-            return None;
+            return Err(problem);
         }
         let credited = self.maker.credited(&self.settings.maker_name);
-        self.maker.draft.change(|scene| *scene = credited);
-        self.maker.draft.level().ok()
+        let level = Level::from_scene(self.maker.draft.id(), credited);
+        level.map_err(|error| self.told(&error))
     }
 
-    /// Keeps the level beside the shipped ones. Returns whether it can be kept.
+    /// Keeps the level beside the shipped ones, and tells the player. Returns whether it can be kept.
     pub fn keep_draft(&mut self) -> bool {
-        let Some(mut level) = self.finished() else {
-            return false;
-        };
+        let outcome = self.store_draft();
+        let is_kept = outcome.is_ok();
+        self.notify(outcome.map_or_else(|problem| problem, |()| self.making().kept.to_string()));
+        is_kept
+    }
+
+    /// Stores the level beside the shipped ones. If it cannot be kept, returns the reason in words for its maker.
+    fn store_draft(&mut self) -> Result<(), String> {
+        let mut level = self.finished()?;
         level.id = self.free_id(&level);
         let is_new = !self.levels.iter().any(|known| known.id == level.id);
         if is_new && self.has_all_own_levels() {
-            self.notify((self.making().own_full)(MOST_LEVELS));
-            return false;
+            return Err((self.making().own_full)(MOST_LEVELS));
         }
-        self.maker.draft.set_id(&level.id);
-        let text = self.maker.draft.text();
-        if text.is_empty() || text.len() as u64 > MAX_KEPT_BYTES {
-            self.notify(self.making().not_kept.to_string());
-            return false;
-        }
+        let mut draft = self.maker.draft.clone();
+        draft.amend(|scene| scene.clone_from(level.scene()));
+        draft.set_id(&level.id);
+        let text = draft.text();
+        self.check_text(&text)?;
+        self.maker.draft = draft;
         let level = Arc::new(level);
         self.levels.retain(|known| known.id != level.id);
         self.levels.push(level.clone());
@@ -209,8 +212,17 @@ impl Game {
         if let Some(won) = self.maker.win_of(&level) {
             self.files.keep_best(&level, won);
         }
-        self.notify(self.making().kept.to_string());
-        true
+        Ok(())
+    }
+
+    /// Returns why the text of a level cannot be kept, in words for its maker.
+    fn check_text(&self, text: &str) -> Result<(), String> {
+        let words = self.making();
+        match text.len() as u64 {
+            0 => Err(words.has_huge_number.to_string()),
+            1..=MAX_KEPT_BYTES => Ok(()),
+            _ => Err(words.not_kept.to_string()),
+        }
     }
 
     /// Adds a copy of an own level.
@@ -218,12 +230,7 @@ impl Game {
         let mut level = Level::clone(&self.levels[index]);
         let text = self.text_of(&level);
         let mut draft = Draft::of_level(&level, text.as_deref());
-        for language in [Language::English, Language::Japanese] {
-            let name = draft.name(language).to_string();
-            if !name.is_empty() {
-                draft.set_name(language, &format!("{name} 2"));
-            }
-        }
+        draft.restart(|scene| append_to_names(scene, " 2"));
         if !is_made_here(&level.id) {
             draft.set_origin(&origin_of(&level));
         }
@@ -234,16 +241,23 @@ impl Game {
             Ok(copy) => copy,
             Err(error) => return self.notify(self.told(&error)),
         };
+        let text = draft.text();
+        if let Err(problem) = self.check_text(&text) {
+            return self.notify(problem);
+        }
         level = copy;
         level.id = self.new_id();
-        self.files.keep_level_text(&level.id, draft.text());
+        self.files.keep_level_text(&level.id, text);
         self.levels.push(Arc::new(level));
     }
 
-    /// Returns the id under which a level is kept: that of the own level that was changed, or a new one.
+    /// Returns the id under which a level is kept: that of the own level that was changed, or a new one. The id of a level
+    /// that can be brought back stays free for it.
     fn free_id(&self, level: &Level) -> String {
         let is_own = self.maker.origin.is_none() && is_made_here(&level.id);
-        match is_own {
+        let mut removed = self.removed.iter();
+        let is_removed = removed.any(|(known, _)| known.id == level.id);
+        match is_own && !is_removed {
             true => level.id.clone(),
             false => self.new_id(),
         }
@@ -258,8 +272,9 @@ impl Game {
 
     /// Copies a link to the level, with the maker's own round as a ghost to race if there is one.
     pub fn copy_link_to_draft(&mut self) {
-        let Some(level) = self.finished() else {
-            return;
+        let level = match self.finished() {
+            Ok(level) => level,
+            Err(problem) => return self.notify(problem),
         };
         // A round that is too long for a link is left out.
         let link = self.maker.win_of(&level).and_then(|won| won.link().ok());
@@ -268,13 +283,16 @@ impl Game {
 
     /// Returns the QR code of the link to the level. `None` if the level is too large for one.
     pub fn code_of_draft(&mut self) -> Option<Code> {
-        if self.maker.summary().code.is_none() {
-            let credited = self.maker.credited(&self.settings.maker_name);
+        let maker = self.settings.maker_name.clone();
+        let known = self.maker.summary().code.as_ref();
+        if known.is_none_or(|(known, _)| *known != maker) {
+            let credited = self.maker.credited(&maker);
             let level = Level::from_scene(self.maker.draft.id(), credited).ok();
             let code = level.and_then(|level| Code::of_level(&address_of_page(), &level));
-            self.maker.summary().code = Some(code);
+            self.maker.summary().code = Some((maker, code));
         }
-        self.maker.summary().code.clone().flatten()
+        let code = self.maker.summary().code.as_ref();
+        code.and_then(|(_, code)| code.clone())
     }
 
     /// Whether links lead to a page, so that a phone can open their QR codes.
@@ -296,21 +314,46 @@ impl Game {
         maker.saved.as_ref() != Some(maker.draft.scene())
     }
 
-    /// Leaves the editor. A new or own level is kept. A changed copy of another level, and one that cannot be played yet,
-    /// stays in the making until another level is opened.
+    /// Leaves the editor. A changed level is kept. One without a name, or that cannot be played yet, stays in the making until
+    /// another level is opened.
     pub fn leave_editor(&mut self) {
+        self.close_screen(Screen::Editor);
+    }
+
+    /// Keeps the level whose editor was closed if it was changed, and tells the player.
+    pub(super) fn keep_left_level(&mut self) {
         self.end_drag();
-        let is_own = self.maker.origin.is_none();
-        let is_kept = is_own && self.has_unsaved_level() && self.keep_draft();
-        if !is_kept && self.has_unsaved_level() {
+        if self.has_unsaved_level() && !self.keep_draft() {
             self.notify(self.making().still_open.to_string());
         }
-        self.screens.close(Screen::Editor);
-        self.arrive();
+    }
+
+    /// Keeps the level in the editor if it was changed, and tells the player only that. Called before another level replaces
+    /// it.
+    pub(super) fn keep_replaced_level(&mut self) {
+        if self.keep_silently() {
+            self.notify(self.making().kept.to_string());
+        }
+    }
+
+    /// Keeps the level in the editor if it was changed and can be kept. Returns whether it was stored.
+    pub(super) fn keep_silently(&mut self) -> bool {
+        self.end_drag();
+        self.has_unsaved_level() && self.store_draft().is_ok()
     }
 }
 
-/// Returns who made a level and from which one it was made, as lines for the player.
+/// Adds an ending to the names of a level.
+pub(super) fn append_to_names(scene: &mut Scene, ending: &str) {
+    for language in [Language::English, Language::Japanese] {
+        let name = name_in(scene, language).to_string();
+        if !name.is_empty() {
+            set_name(scene, language, &format!("{name}{ending}"));
+        }
+    }
+}
+
+/// Returns the maker and the origin of a level, as lines for the player.
 pub fn credits(level: &Level, words: &MakingWords) -> Vec<String> {
     let game = level.game();
     let line = |name: &Option<String>, most: usize, told: fn(&str) -> String| {

@@ -63,18 +63,63 @@ fn preview_is_one_step_when_it_settles() {
 #[test]
 fn names_are_trimmed_and_cut() {
     let mut draft = Draft::of_level(&Level::open("classic").unwrap(), None);
-    draft.set_name(Language::English, "  A\n\u{7}b  ");
-    draft.set_name(Language::Japanese, &"あ".repeat(100));
+    let long = "あ".repeat(100);
+    draft.set_names(&[
+        (Language::English, "  A\n\u{7}b  "),
+        (Language::Japanese, &long),
+    ]);
     assert_eq!(draft.name(Language::English), "Ab");
     assert_eq!(draft.name(Language::Japanese).chars().count(), MAX_NAME);
     draft.level().unwrap();
-    draft.set_name(Language::Japanese, "");
+    draft.set_names(&[(Language::Japanese, "")]);
     assert_eq!(draft.scene().game.as_ref().unwrap().name.ja, None);
     draft.level().unwrap();
-    draft.set_name(Language::English, " \t ");
+    draft.set_names(&[(Language::English, " \t ")]);
     assert_eq!(draft.name(Language::English), "");
     draft.level().expect_err("a level needs an English name");
     assert_eq!(draft.first_name(Language::English), "Classic");
+}
+
+#[test]
+fn typed_name_is_one_step_of_undo() {
+    let mut draft = Draft::of_level(&Level::open("classic").unwrap(), None);
+    for name in ["M", "My", "Mine"] {
+        draft.set_names(&[(Language::English, name), (Language::Japanese, name)]);
+    }
+    draft.settle();
+    assert_eq!(draft.name(Language::Japanese), "Mine");
+    assert!(draft.undo() && !draft.can_undo());
+    assert_eq!(draft.name(Language::English), "Classic");
+}
+
+#[test]
+fn amended_draft_has_no_further_step_and_keeps_redo() {
+    let mut draft = Draft::blank(2);
+    draft.change(|scene| scene.drag = 9.0);
+    assert!(draft.undo());
+    draft.amend(|scene| scene.drag = 3.0);
+    assert!(draft.scene().drag == 3.0 && !draft.can_undo());
+    assert!(draft.redo() && draft.scene().drag == 9.0);
+}
+
+#[test]
+fn restarted_draft_has_no_steps_and_a_new_first_name() {
+    let mut draft = Draft::blank(2);
+    draft.change(|scene| scene.drag = 9.0);
+    draft.restart(|scene| set_name(scene, Language::English, "Second"));
+    assert!(!draft.can_undo() && draft.scene().drag == 9.0);
+    assert_eq!(draft.first_name(Language::English), "Second");
+}
+
+#[test]
+fn oldest_steps_of_a_huge_level_are_forgotten() {
+    let mut draft = Draft::blank(2);
+    draft.restart(|scene| scene.body[0].content = Some("A".repeat(100 << 20)));
+    for step in 1..=4 {
+        draft.change(|scene| scene.drag = step as f32);
+    }
+    let undone = (0..4).take_while(|_| draft.undo()).count();
+    assert_eq!((undone, draft.scene().drag), (2, 2.0));
 }
 
 #[test]
