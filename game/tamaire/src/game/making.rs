@@ -6,7 +6,7 @@ use crate::session::Session;
 use egui::Vec2;
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::import::FileType;
-use fuwafuwa_scenes::scene::{BodyText, Form};
+use fuwafuwa_scenes::scene::{BodyText, Form, MAX_MATERIALS};
 use fuwafuwa_scenes::{Scene, SceneError};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -26,9 +26,9 @@ pub enum DrawingTool {
     /// Draws with the crayon.
     #[default]
     Crayon,
-    /// Colours what is there with the crayon.
+    /// Gives solid cells the crayon.
     Paint,
-    /// Takes away.
+    /// Empties cells.
     Eraser,
     /// Fills an area that is enclosed.
     Bucket,
@@ -44,10 +44,10 @@ const STAMP: f32 = 4.0;
 const ABOVE_FLOOR: f32 = 0.02;
 /// Direction from which a new block is seen: azimuth and elevation [rad].
 const FRONT: [f32; 2] = [0.6, 0.45];
-/// Cells of a block for one of the paper.
+/// Factor on the radii of the paper in a block.
 const IN_BLOCK: f32 = 0.7;
 
-/// What may surprise when a drawing is dropped.
+/// Weak points of a drawing: separate pieces and thin parts.
 #[derive(Clone)]
 pub struct Flaws {
     cells: Vec<u8>,
@@ -57,7 +57,7 @@ pub struct Flaws {
     pub thin: Vec<bool>,
 }
 
-/// Where a drawing goes.
+/// Destination of the drawing.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 enum Target {
     /// Into an empty room, as its only body.
@@ -76,6 +76,23 @@ pub struct PaperPicture {
     bytes: Arc<[u8]>,
     /// Maximum number of cells along its longer side.
     pub across: usize,
+    /// Palette before the step of undo that the current drag of the slider has made. `None` = the next change is a new step.
+    before_drag: Option<Palette>,
+}
+
+impl PaperPicture {
+    /// Notes that the slider is not dragged.
+    pub fn end_drag(&mut self) {
+        self.before_drag = None;
+    }
+}
+
+/// Reason why a drawing is not put into a level.
+enum NotPut {
+    /// Nothing is drawn.
+    Empty,
+    /// The level can have no further body or material.
+    NoSpace,
 }
 
 /// The drawing in the making, and the level into which it goes.
@@ -112,7 +129,7 @@ pub struct Maker {
     room: Draft,
     /// Level in the editor.
     pub draft: Draft,
-    /// Where the drawing goes.
+    /// Destination of the drawing.
     target: Target,
     /// Edge length of a cell [m] in the body that is redrawn; `None` for the usual one.
     cell: Option<f32>,
@@ -299,15 +316,14 @@ impl Maker {
         self.show_block(true);
     }
 
-    /// Puts the drawing into the empty room, or into the level in the editor. Returns whether anything is drawn.
-    pub(super) fn put_drawing(&mut self) -> bool {
+    /// Puts the drawing into an empty room, or into the level in the editor.
+    fn put_drawing(&mut self) -> Result<(), NotPut> {
         self.lift_pen();
         if self.drawing().is_empty() {
-            return false;
+            return Err(NotPut::Empty);
         }
-        let dim = if self.shows_block { 3 } else { 2 };
-        if self.is_alone() && self.room.scene().dim != dim {
-            self.room = Draft::blank(dim);
+        if self.is_alone() {
+            self.room = Draft::blank(if self.shows_block { 3 } else { 2 });
         }
         let (drawing, palette) = (self.drawing().without_history(), self.palette.clone());
         let (draft, body) = match self.target {
@@ -328,16 +344,42 @@ impl Maker {
             }
             Some(put)
         });
-        if let (false, Some(put)) = (self.is_alone(), put) {
+        let put = put.ok_or(NotPut::NoSpace)?;
+        if !self.is_alone() {
             self.target = Target::Body(put);
         }
-        true
+        Ok(())
     }
 
-    /// Makes the room with the drawing the level in the editor.
+    /// Makes the room with the drawing the level in the editor. If nothing is drawn, the room is the one before.
     pub(super) fn take_room(&mut self) {
-        self.put_drawing();
+        self.put_drawing().ok();
         self.draft = self.room.clone();
+        self.draft.restart(|_| {});
+    }
+
+    /// Empties both sheets, and forgets all materials except the crayons.
+    fn take_new_sheets(&mut self) {
+        (self.paper, self.block) = (Drawing::paper(), Drawing::block());
+        self.palette = Palette::default();
+    }
+
+    /// Makes space in a palette that is nearly full: forgets materials that are on no sheet, and with them the steps of undo.
+    fn make_space_in_palette(&mut self) {
+        /// Number of materials that a picture may add.
+        const SPARE: usize = 16;
+        if self.palette.materials().len() + SPARE <= MAX_MATERIALS {
+            return;
+        }
+        let mut is_used = [false; 256];
+        for &cell in self.paper.cells().iter().chain(self.block.cells()) {
+            is_used[usize::from(cell)] = true;
+        }
+        let (palette, numbers) = self.palette.with_used(&is_used);
+        self.palette = palette;
+        for sheet in [&mut self.paper, &mut self.block] {
+            *sheet = sheet.renumbered(&numbers);
+        }
     }
 }
 
@@ -360,8 +402,13 @@ impl Game {
             };
             return self.notify(told.to_string());
         }
-        if !self.maker.put_drawing() {
-            return self.notify(self.making().draw_first.to_string());
+        if let Err(reason) = self.maker.put_drawing() {
+            let words = self.making();
+            let told = match reason {
+                NotPut::Empty => words.draw_first,
+                NotPut::NoSpace => words.level_full,
+            };
+            return self.notify(told.to_string());
         }
         if let Target::Body(body) = self.maker.target {
             self.go(Screen::Editor);
@@ -378,26 +425,45 @@ impl Game {
 
     /// Draws a picture or model on the paper or as a block.
     pub fn draw_picture(&mut self, name: String, bytes: Vec<u8>) {
-        self.show_picture(PaperPicture {
+        self.maker.make_space_in_palette();
+        let picture = PaperPicture {
             name,
             bytes: bytes.into(),
             across: PAPER,
-        });
+            before_drag: None,
+        };
+        self.show_picture(picture, false);
     }
 
-    /// Draws the picture on the paper again, at most `across` cells wide and high.
-    pub fn redraw_picture(&mut self, across: usize) {
-        if let Some(picture) = self.maker.picture.take() {
-            self.show_picture(PaperPicture { across, ..picture });
+    /// Draws the picture on the paper again, at most `across` cells wide and high. All changes of one drag of the slider are
+    /// one step of undo.
+    pub fn redraw_picture(&mut self, across: usize, is_drag: bool) {
+        let Some(mut picture) = self.maker.picture.take() else {
+            return;
+        };
+        let before = picture.before_drag.take().filter(|_| is_drag);
+        let is_same_step = before.is_some();
+        match before {
+            Some(palette) => self.maker.palette = palette,
+            None => self.maker.make_space_in_palette(),
         }
+        picture.before_drag = is_drag.then(|| self.maker.palette.clone());
+        picture.across = across;
+        self.show_picture(picture, is_same_step);
     }
 
-    fn show_picture(&mut self, picture: PaperPicture) {
+    /// Draws a picture, as a new step of undo or in place of the last one.
+    fn show_picture(&mut self, mut picture: PaperPicture, is_same_step: bool) {
         match imported(&picture, &mut self.maker.palette) {
             Ok((scene, drawing)) => {
                 let maker = &mut self.maker;
                 maker.show_block(!drawing.is_paper());
-                maker.drawing_mut().replace(&drawing);
+                if is_same_step {
+                    maker.drawing_mut().replace_again(&drawing);
+                } else if !maker.drawing_mut().replace(&drawing) {
+                    // An equal drawing is no step that further changes could replace.
+                    picture.end_drag();
+                }
                 let notes = scene.notes().iter().map(self.words().import_note);
                 notes.for_each(|note| self.notices.tell(&note));
                 self.maker.picture = drawing.is_paper().then_some(picture);
@@ -412,8 +478,11 @@ impl Game {
             return;
         };
         let maker = &mut self.maker;
-        match body::take(maker.draft.scene(), index, &mut maker.palette) {
+        let mut palette = Palette::default();
+        match body::take(maker.draft.scene(), index, &mut palette) {
             Ok(Some(taken)) => {
+                maker.take_new_sheets();
+                maker.palette = palette;
                 maker.show_block(!taken.drawing.is_paper());
                 *maker.drawing_mut() = taken.drawing;
                 (maker.target, maker.cell) = (Target::Body(index), Some(taken.cell));
@@ -428,7 +497,7 @@ impl Game {
     pub fn draw_new_body(&mut self) {
         let maker = &mut self.maker;
         maker.show_block(maker.draft.scene().dim == 3);
-        (maker.paper, maker.block) = (Drawing::paper(), Drawing::block());
+        maker.take_new_sheets();
         (maker.target, maker.cell) = (Target::NewBody, None);
         self.go(Screen::Paper);
     }
@@ -445,6 +514,7 @@ fn imported(picture: &PaperPicture, palette: &mut Palette) -> Result<(Scene, Dra
         name,
         bytes,
         across,
+        ..
     } = picture;
     let is_model = FileType::of(bytes) == FileType::Vox;
     let dim = if is_model { 3 } else { 2 };

@@ -27,7 +27,7 @@ fn draw(window: &mut Window, sheet: &str, points: &[[f32; 2]]) {
 }
 
 /// Drags the mouse through points of the screen.
-fn drag(window: &mut Window, points: &[Pos2]) {
+pub fn drag(window: &mut Window, points: &[Pos2]) {
     let [first, .., last] = points else {
         panic!("a drag has two points");
     };
@@ -339,7 +339,7 @@ fn levels_of_two_makers_with_the_same_id_stay_apart() {
 
 /// Returns a clock that goes on by a millisecond each time it is read, so that checks in the background take several
 /// frames.
-fn slow_clock() -> Clock {
+pub fn slow_clock() -> Clock {
     let time = std::cell::Cell::new(0.0);
     Clock::of(move || {
         time.set(time.get() + 0.001);
@@ -348,7 +348,7 @@ fn slow_clock() -> Clock {
 }
 
 /// Returns the middle of an item on the screen.
-fn place_of_item(window: &mut Window, item: Item) -> Pos2 {
+pub fn place_of_item(window: &mut Window, item: Item) -> Pos2 {
     let game = game(window);
     let [low, high] =
         tamaire_maker::items::bounds(game.maker.draft.scene(), item).expect("it has a place");
@@ -678,7 +678,7 @@ fn colours_of_a_picture_stay_after_another_one_and_undo() {
             .collect::<Vec<_>>()
     };
     let before = colours(game);
-    game.redraw_picture(24);
+    game.redraw_picture(24, false);
     assert_ne!(colours(game), before);
     assert!(game.maker.paper.undo());
     assert_eq!(colours(game), before);

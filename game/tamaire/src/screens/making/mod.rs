@@ -137,16 +137,22 @@ fn picture_slider(game: &mut Game, ui: &mut Ui, rect: Rect) {
     };
     let (theme, words) = (game.theme(), game.making());
     let mut fine = across as f32;
-    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
+    let builder = UiBuilder::new().max_rect(rect);
+    let shown = ui.scope_builder(builder, |ui| {
         let title = words.fineness_of_picture;
         let range = [LEAST_ACROSS, PAPER as f32];
-        let (_, asked) = track(ui, &theme, title, fine, range, 4.0, rect.width());
+        let (response, asked) = track(ui, &theme, title, fine, range, 4.0, rect.width());
         if let Some(asked) = asked {
             fine = (asked / 4.0).round() * 4.0;
         }
+        response.is_pointer_button_down_on()
     });
+    let is_drag = shown.inner;
     if fine as usize != across {
-        game.redraw_picture(fine as usize);
+        game.redraw_picture(fine as usize, is_drag);
+    }
+    if let Some(picture) = game.maker.picture.as_mut().filter(|_| !is_drag) {
+        picture.end_drag();
     }
 }
 

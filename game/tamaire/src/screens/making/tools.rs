@@ -372,25 +372,27 @@ pub(super) fn history(game: &mut Game, ui: &mut Ui, rect: Rect) {
         let theme = game.theme();
         if step_button(ui, &theme, place, name, way, is_able) {
             game.blip(Menu::Confirm);
-            game.maker.lift_pen();
-            game.maker.picture = None;
-            let drawing = game.maker.drawing_mut();
-            if way < 0.0 {
-                drawing.undo();
-            } else {
-                drawing.redo();
-            }
+            step(game, way > 0.0);
         }
     }
     let [undoes, redoes] = step_keys(ui);
     if undoes {
-        game.maker.lift_pen();
-        game.maker.drawing_mut().undo();
+        step(game, false);
     }
     if redoes {
-        game.maker.lift_pen();
-        game.maker.drawing_mut().redo();
+        step(game, true);
     }
+}
+
+/// Undoes or redoes a step of the drawing.
+fn step(game: &mut Game, forward: bool) {
+    let maker = &mut game.maker;
+    maker.lift_pen();
+    maker.picture = None;
+    match forward {
+        true => maker.drawing_mut().redo(),
+        false => maker.drawing_mut().undo(),
+    };
 }
 
 /// Shows the button for undo (`way` = -1) or redo. Returns whether it is pressed.
