@@ -1,7 +1,7 @@
 //! The room in the editor: items to select, drag, stretch and turn.
 
 use super::super::widgets::words;
-use crate::game::{Drag, EditorPart, GRID, Game};
+use crate::game::{Drag, EditorPart, GRID, Game, TURN};
 use app_shell::View;
 use app_shell::widgets::{fitted, is_on};
 use egui::{
@@ -52,17 +52,25 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, room: Rect) {
     guides(game, ui, room, &view);
     frame(game, ui, &view);
     problem(game, ui, room);
+    // A dragged thing that has left the room has no widget that could end its drag.
+    if !ui.input(|input| input.pointer.any_down()) {
+        game.end_drag();
+    }
 }
 
 /// Turns the camera in 3D with a drag of the secondary button or of two fingers over the room.
 fn look_around(game: &mut Game, ui: &Ui, room: Rect) {
-    let by = ui.input(|input| {
+    let (by, has_fingers) = ui.input(|input| {
         let pointer = &input.pointer;
         let is_over = pointer.latest_pos().is_some_and(|at| room.contains(at));
         let turns = is_over && pointer.button_down(PointerButton::Secondary);
         let fingers = input.multi_touch().map(|touch| touch.translation_delta);
-        fingers.unwrap_or(if turns { pointer.delta() } else { Vec2::ZERO })
+        let by = fingers.unwrap_or(if turns { pointer.delta() } else { Vec2::ZERO });
+        (by, fingers.is_some())
     });
+    if has_fingers {
+        game.drop_drag();
+    }
     game.bout.camera.orbit(-ORBIT * by.x, ORBIT * by.y);
     if game.maker.editor.selection.is_empty() {
         let theme = game.theme();
@@ -129,7 +137,7 @@ fn floor(game: &mut Game, ui: &mut Ui, room: Rect, view: &View) {
     if floor.clicked() {
         game.select_nothing();
     }
-    if floor.drag_started()
+    if floor.drag_started_by(PointerButton::Primary)
         && let Some(at) = floor.interact_pointer_pos()
     {
         let from = ui.input(|input| input.pointer.press_origin()).unwrap_or(at);
@@ -172,7 +180,7 @@ fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
         let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
         let before = game.maker.editor.is_adding;
         // With keys, a second press takes hold of a selected item.
-        let is_by_pointer = response.clicked_by(egui::PointerButton::Primary)
+        let is_by_pointer = response.clicked_by(PointerButton::Primary)
             && response.interact_pointer_pos().is_some();
         if is_selected && !is_by_pointer {
             game.maker.editor.moves_by_keys ^= true;
@@ -184,7 +192,7 @@ fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
         }
         response.request_focus();
     }
-    if response.drag_started() {
+    if response.drag_started_by(PointerButton::Primary) {
         if !is_selected {
             game.maker.editor.selection = items::with_bars(game.maker.draft.scene(), item);
             game.maker.editor.part = EditorPart::Selection;
@@ -298,8 +306,7 @@ fn follow(game: &mut Game, ui: &Ui, view: &View, response: &Response) {
             let angle = |point: Vec3| (point.y - about.y).atan2(point.x - about.x);
             let mut turn = angle(now) - angle(handle);
             if snaps {
-                let step = std::f32::consts::PI / 12.0;
-                turn = (turn / step).round() * step;
+                turn = (turn / TURN).round() * TURN;
             }
             let mut turned = Vec::new();
             game.preview_level(|scene| {
@@ -384,7 +391,7 @@ fn one_handle(
     };
     let rim = Stroke::new(2.5, ink);
     ui.painter().circle(at, radius, Color32::WHITE, rim);
-    if response.drag_started() {
+    if response.drag_started_by(PointerButton::Primary) {
         game.maker.editor.drag = Some(drag);
     }
     follow(game, ui, view, &response);

@@ -143,12 +143,13 @@ fn keys(game: &mut Game, ui: &Ui) {
             has(|event| matches!(event, Paste(_))),
         )
     });
-    if copies || cuts {
+    let has_selection = !game.maker.editor.selection.is_empty();
+    if has_selection && (copies || cuts) {
         game.copy_selection();
         // With an empty clipboard, the system does not tell the game that the keys for pasting are pressed.
         ui.ctx().copy_text(game.draft_name().to_string());
     }
-    if cuts {
+    if has_selection && cuts {
         game.remove_selection();
     }
     if pastes {

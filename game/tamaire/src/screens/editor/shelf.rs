@@ -17,7 +17,7 @@ use tamaire_sound::Menu;
 const HIGH: f32 = 44.0;
 /// Width of a button with text [points].
 const WIDE: f32 = 108.0;
-/// What can be done with the selection.
+/// Actions on the selection.
 #[derive(Copy, Clone, PartialEq)]
 enum Deed {
     Draw,
