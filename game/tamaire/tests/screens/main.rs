@@ -3,6 +3,7 @@
 
 mod clicks;
 mod contrast;
+mod editing;
 mod fingers;
 mod help;
 mod hostile;
