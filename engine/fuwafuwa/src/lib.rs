@@ -63,6 +63,7 @@ pub mod guide;
 pub mod inspect;
 #[doc(hidden)]
 pub mod instances;
+pub mod library;
 #[cfg(feature = "serde")]
 pub mod snapshot;
 

@@ -5,16 +5,19 @@ use super::shapes::{BallText, BoxText, CapsuleText, HalfSpaceText};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use fuwafuwa::inspect::Elasticity;
+use fuwafuwa::library::{self, LibraryMaterial};
 use fuwafuwa::{
     Damping, Layers, Material, PronyTerm, RateToughening, StrengthCriterion, StressLaw,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A `[[material]]` table. Missing fields take the values of [`Material::default`].
+/// A `[[material]]` table. Missing fields take the values of the material `like`, or of [`Material::default`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MaterialText {
+    /// Name of a material of the [library](fuwafuwa::library), for example `"ecoflex-00-30"`.
+    pub like: Option<String>,
     /// Young's modulus [Pa].
     pub young: Option<f64>,
     /// Poisson's ratio, 0 to 0.49.
@@ -273,7 +276,8 @@ pub fn extension_of(name: &str) -> String {
 
 impl MaterialText {
     pub(super) fn material(&self) -> Material {
-        let usual = Material::default();
+        let named = self.like.as_deref().and_then(library::find);
+        let usual = named.map_or_else(Material::default, LibraryMaterial::material);
         // An unbreakable material gets infinite toughness, too: with infinite strength alone, a crack could
         // enter from a weaker neighbour.
         let borne = |given: Option<f32>, usual| match self.unbreakable {
@@ -286,10 +290,13 @@ impl MaterialText {
                 poisson: self.poisson.unwrap_or(usual.elasticity.poisson),
             },
             stress_law: self.stress_law.map_or(usual.stress_law, StressLaw::from),
-            prony: [0, 1].map(|term: usize| {
-                let given = self.prony.get(term);
-                given.map_or(PronyTerm::NONE, |&[ratio, time]| PronyTerm { ratio, time })
-            }),
+            prony: match self.prony.is_empty() {
+                true => usual.prony,
+                false => [0, 1].map(|term: usize| {
+                    let given = self.prony.get(term);
+                    given.map_or(PronyTerm::NONE, |&[ratio, time]| PronyTerm { ratio, time })
+                }),
+            },
             density: self.density.unwrap_or(usual.density),
             damping: match self.damping {
                 Some(ratio) => Damping::at(ratio, 4.0),
@@ -323,6 +330,7 @@ impl MaterialText {
         let unbreakable = material.strength == f32::INFINITY && material.toughness == f32::INFINITY;
         let finite = |borne: f32| (!unbreakable).then_some(borne);
         Self {
+            like: None,
             young: Some(young),
             poisson: Some(poisson),
             stress_law: (material.stress_law != StressLaw::Corotational)
@@ -364,6 +372,11 @@ impl MaterialText {
             let reason = "excludes `mass_damping` and `stiffness_damping`";
             return Err(FieldError::new("damping", reason.to_owned()));
         }
+        if let Some(name) = &self.like
+            && library::find(name).is_none()
+        {
+            return Err(FieldError::new("like", unknown_material(name)));
+        }
         if self.prony.len() > 2 {
             let reason = format!("expected at most 2 terms, found {}", self.prony.len());
             return Err(FieldError::new("prony", reason));
@@ -371,6 +384,21 @@ impl MaterialText {
         let checked = self.material().check();
         checked.map_err(|error| FieldError::engine("young", error))
     }
+}
+
+/// Returns the reason why a name is not one of the library, with the names that begin alike, or all names.
+fn unknown_material(name: &str) -> String {
+    let names = || library::MATERIALS.iter().map(|material| material.name);
+    let start = |name: &str| name.chars().take(3).collect::<String>();
+    let alike: Vec<&str> = names()
+        .filter(|known| start(known) == start(name))
+        .collect();
+    let list = match alike.is_empty() {
+        true => names().collect::<Vec<&str>>().join(", "),
+        false => alike.join(", "),
+    };
+    let name: String = name.chars().take(40).collect();
+    format!("expected a material of the library ({list}), found {name:?}")
 }
 
 /// Returns the terms of the Prony series of a material, up to the last one that has an effect.

@@ -1,7 +1,9 @@
 //! Shapes and materials of bodies in scenes.
 
 use crate::picture::png_of;
-use fuwafuwa::{Dim, Dim2, Dim3, PronyTerm, SoftBody, StrengthCriterion, StressLaw, Vec2};
+use fuwafuwa::{
+    Dim, Dim2, Dim3, Material, PronyTerm, SoftBody, StrengthCriterion, StressLaw, Vec2, library,
+};
 use fuwafuwa_scenes::disk::open_scene;
 use fuwafuwa_scenes::{Recording, Scene, SceneError};
 use std::path::PathBuf;
@@ -302,4 +304,27 @@ n = 4
     assert_eq!(neo_hookean.rate_toughening.exponent, 0.5);
     let again = Scene::read("toy.toml", &scene.text().unwrap(), &[]).unwrap();
     assert_eq!(again.materials(), scene.materials());
+}
+
+#[test]
+fn material_like_one_of_library_takes_its_values_except_given_ones() {
+    let text = "
+dim = 3
+[[material]]
+like = \"gelatine-10\"
+density = 1020.0
+[[body]]
+shape = \"ball\"
+n = 4
+";
+    let scene = Scene::read("toy.toml", text, &[]).unwrap();
+    let [gelatine] = scene.materials()[..] else {
+        panic!("one material")
+    };
+    let expected = Material {
+        density: 1020.0,
+        ..library::find("gelatine-10").unwrap().material()
+    };
+    assert_eq!(gelatine, expected);
+    assert!((gelatine.fracture_energy() - 1.1).abs() < 1e-3);
 }

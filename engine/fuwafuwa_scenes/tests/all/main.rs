@@ -8,6 +8,7 @@ mod import_drawing;
 mod import_photo;
 mod import_png;
 mod import_vox;
+mod library;
 mod machinery;
 mod mistakes;
 mod picture;

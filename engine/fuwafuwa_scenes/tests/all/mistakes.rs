@@ -61,7 +61,7 @@ fn error_names_file_line_field_and_expectation() {
         (
             "young",
             "yuong",
-            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `young`, `poisson`, `stress_law`, `prony`, `density`, `mass_damping`, `stiffness_damping`, `damping`, `friction`, `rolling_resistance`, `strength`, `hydrostatic_strength`, `strength_scatter`, `toughness`, `rate_toughening`, `yield_strain`, `plastic_limit`, `unbreakable`, `colour`",
+            ", line 3: yuong = 5000.0: unknown field `yuong`, expected one of `like`, `young`, `poisson`, `stress_law`, `prony`, `density`, `mass_damping`, `stiffness_damping`, `damping`, `friction`, `rolling_resistance`, `strength`, `hydrostatic_strength`, `strength_scatter`, `toughness`, `rate_toughening`, `yield_strain`, `plastic_limit`, `unbreakable`, `colour`",
         ),
         (
             "\"ball\"",
@@ -157,7 +157,12 @@ fn error_names_file_line_field_and_expectation() {
         (
             "young = 5000.0",
             "strength = 3000.0\nhydrostatic_strength = 900.0",
-            ", line 3: material 1, hydrostatic_strength: expected finite and above a third of a finite strength [Pa], found 900.0",
+            ", line 4: material 1, hydrostatic_strength: expected finite and above a third of a finite strength [Pa], found 900.0",
+        ),
+        (
+            "young = 5000.0",
+            "like = \"ecoflex\"",
+            ", line 3: material 1, like: expected a material of the library (ecoflex-00-10, ecoflex-00-30, ecoflex-00-50), found \"ecoflex\"",
         ),
         (
             "young = 5000.0",
