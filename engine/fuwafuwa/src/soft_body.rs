@@ -361,6 +361,11 @@ impl<D: Dim> SoftBody<D> {
         self.cache.properties.rolling_resistance
     }
 
+    /// Returns whether the fracture energy of a material in use grows with the speed of a crack.
+    pub(crate) fn has_rate_toughening(&self) -> bool {
+        self.cache.properties.has_rate_toughening
+    }
+
     /// Returns whether any material in use has a finite strength; otherwise the body cannot tear.
     pub(crate) fn can_tear(&self) -> bool {
         self.cache.properties.least_strength < f32::INFINITY

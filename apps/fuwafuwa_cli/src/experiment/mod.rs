@@ -3,9 +3,11 @@
 //! Each experiment is a module with a function that returns its [`Record`]. A row of a record is a calibration, which
 //! fits one constant to one measured value, or a prediction, which uses that constant; see [`Role`].
 
+mod crack_speed;
 mod fracture;
 mod pull;
 mod strength;
+mod wire;
 
 use crate::check::{self, run_all};
 use crate::plot::Plot;
@@ -54,6 +56,11 @@ enum Which {
     /// A poker chip cracks inside, and a twisted tube at its shear strength. Reference: the strength surface of Kumar,
     /// Bourdin, Francfort and Lopez-Pamies (2020), and the challenge set of Kamarei, Zeng, Dolbow and Lopez-Pamies (2026).
     Strength,
+    /// An edge cuts gelatine at three speeds. Reference: the fracture energy of Forte, D'Amico, Charalambides, Dini and
+    /// Williams (2015).
+    Wire,
+    /// Cracks in stretched strips run slower than Rayleigh waves. Reference: the limit speed of dynamic fracture mechanics.
+    CrackSpeed,
     /// The experiments that take some seconds each.
     Quick,
     /// All experiments.
@@ -61,12 +68,12 @@ enum Which {
 }
 
 /// Experiments that take more than some five seconds on two cores, which [`Which::Quick`] leaves out.
-const LONG: [Which; 2] = [Which::Fracture, Which::Strength];
+const LONG: [Which; 3] = [Which::Fracture, Which::Strength, Which::Wire];
 
 type Experiment = fn(&Progress) -> Result<Record>;
 
 /// All experiments, in the order of their output.
-const EXPERIMENTS: [(Which, Experiment); 4] = [
+const EXPERIMENTS: [(Which, Experiment); 6] = [
     (Which::Elastica, |progress| {
         of_check(check::elastica::check, 4, progress)
     }),
@@ -75,6 +82,8 @@ const EXPERIMENTS: [(Which, Experiment); 4] = [
     }),
     (Which::Fracture, fracture::run),
     (Which::Strength, strength::run),
+    (Which::Wire, wire::run),
+    (Which::CrackSpeed, crack_speed::run),
 ];
 
 /// Introduction of the report.

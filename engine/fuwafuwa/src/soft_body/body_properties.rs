@@ -22,6 +22,8 @@ pub struct BodyProperties {
     /// Largest product of the angular frequency of the breathing mode of a voxel and the width of the voxel
     /// [m/s].
     pub fastest_breathing: f64,
+    /// Whether the fracture energy of a material in use grows with the speed of a crack.
+    pub has_rate_toughening: bool,
     /// Whether a material in use is hyperelastic.
     pub is_hyperelastic: bool,
 }
@@ -60,6 +62,8 @@ impl BodyProperties {
             least_strength: strengths.fold(f32::INFINITY, f32::min),
             fastest_wave: waves.fold(0.0, f64::max),
             fastest_breathing: breathing.fold(0.0, f64::max),
+            has_rate_toughening: used()
+                .any(|(_, material)| material.rate_toughening.exponent > 0.0),
             is_hyperelastic: used().any(|(_, material)| material.stress_law.factors().is_some()),
         }
     }

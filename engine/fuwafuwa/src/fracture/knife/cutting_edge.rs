@@ -78,6 +78,12 @@ impl KnifeState {
         for place in 0..self.samples.len() {
             let at = self.place(&pose, place);
             let sample = &mut self.samples[place];
+            let toughened = sample.inside.and_then(|(id, _)| {
+                let body = bodies.get(id).ok()?;
+                let size = body.grid().voxel_size();
+                body.has_rate_toughening().then_some(size)
+            });
+            sample.update_speed(since, toughened);
             if !sample.is_stuck() {
                 (sample.passed, sample.before) = (sample.inside, at);
             }

@@ -52,7 +52,7 @@ impl KnifeState {
             let Some((id, _)) = self.samples[place].inside else {
                 continue;
             };
-            let row = self.row(&pose, place, &bodies[id], (holder, duration));
+            let row = self.row(&pose, place, &bodies[id], duration);
             let piece = bodies[id].pieces().of_node(row.weights[0].0);
             if bodies[id].pieces().list[piece].asleep && holder.pushes() {
                 woken.push((id.slot(), piece));
@@ -105,7 +105,7 @@ impl KnifeState {
         pose: &EdgePose,
         place: usize,
         body: &SoftBody<D>,
-        (holder, duration): (&RigidState, f32),
+        duration: f32,
     ) -> EdgeRow {
         let (id, point) = self.samples[place].inside.expect("the sample is in a body");
         let mesh = body.mesh();
@@ -119,10 +119,7 @@ impl KnifeState {
         let weights = body.weights(element, point.at);
         let lever = self.lever(pose, place);
         let forth = match point.is_uncut_ahead(body, along, toward) {
-            true => {
-                let slip = holder.velocity_at(lever) - body.velocity_of(&weights);
-                self.cutting_force(material, slip.dot(pose.toward))
-            }
+            true => self.cutting_force(material, self.samples[place].speed),
             false => 0.0,
         };
         let share = self.share::<D>(pose, place) * duration;

@@ -3,7 +3,7 @@
 use super::material_point::MaterialPoint;
 use crate::foundation::arena::SoftBodyHandle;
 use crate::foundation::dim::Point;
-use crate::foundation::hash::hash_state;
+use crate::foundation::hash::{Hash, HashState};
 use crate::foundation::ids::NodeId;
 use glam::Vec3;
 
@@ -37,9 +37,35 @@ pub struct Sample {
     pub slid: bool,
     /// Whether the sample has advanced through uncut tissue since the last sweep.
     pub cut: bool,
+    /// Mean speed of the sample through a material with rate toughening in the last sweeps [m/s]; 0 in other materials.
+    pub speed: f32,
 }
 
-hash_state! { struct Sample { inside, passed, before, slid, cut } }
+impl HashState for Sample {
+    fn hash_state(&self, hash: &mut Hash) {
+        let Self {
+            inside,
+            passed,
+            before,
+            slid,
+            cut,
+            speed,
+        } = self;
+        inside.hash_state(hash);
+        passed.hash_state(hash);
+        before.hash_state(hash);
+        slid.hash_state(hash);
+        cut.hash_state(hash);
+        // Edges in other materials have the hash of earlier versions.
+        if *speed != 0.0 {
+            speed.hash_state(hash);
+        }
+    }
+}
+
+/// Weight of the last sweep in the mean speed of a sample. The speed within a single sweep fluctuates with the
+/// vibrations of the tissue.
+const LAST_SWEEP: f32 = 0.1;
 
 impl Sample {
     /// Returns the rest position in `body` up to which the area swept by the sample is already counted.
@@ -54,6 +80,22 @@ impl Sample {
         inside.map(|(_, point)| point)
     }
 
+    /// Updates the mean speed at the end of a sweep of `since` seconds. `size` is the voxel size of the body that the
+    /// sample is in, if a material there has rate toughening.
+    pub fn update_speed(&mut self, since: f32, size: Option<f32>) {
+        let Some(size) = size else {
+            self.speed = 0.0;
+            return;
+        };
+        let way = match (self.passed, self.inside) {
+            (Some((from, start)), Some((to, end))) if from == to && !self.is_stuck() => {
+                (end.at - start.at).length() * size
+            }
+            _ => 0.0,
+        };
+        self.speed += (way / since - self.speed) * LAST_SWEEP;
+    }
+
     /// Returns whether tissue has held the sample since the last sweep.
     pub fn is_stuck(&self) -> bool {
         self.inside.is_some() && !self.slid
@@ -63,6 +105,7 @@ impl Sample {
     #[cfg(feature = "serde")]
     pub fn is_sound(&self) -> bool {
         let spots = [self.inside, self.passed].into_iter().flatten();
-        self.before.is_finite() && { spots }.all(|(_, point)| point.at.is_finite())
+        self.before.is_finite() && self.speed.is_finite() && { spots }
+            .all(|(_, point)| point.at.is_finite())
     }
 }
