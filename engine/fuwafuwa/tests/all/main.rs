@@ -29,6 +29,7 @@ mod snapshots;
 #[cfg(feature = "serde")]
 mod state_hash;
 mod stiff_bodies;
+mod strength_laws;
 mod stress_laws;
 mod ticks;
 mod vectors;
