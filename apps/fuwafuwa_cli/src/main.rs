@@ -5,6 +5,7 @@
 //! fuwafuwa figure all --out figures
 //! fuwafuwa check all
 //! fuwafuwa experiment all
+//! fuwafuwa material fit curve.csv
 //! fuwafuwa run tear --film tear.gif
 //! fuwafuwa scan grey.nii.gz white.nii.gz --out brain.toml
 //! ```
@@ -16,6 +17,7 @@ mod check;
 mod count;
 mod experiment;
 mod figure;
+mod material;
 mod plot;
 mod replay;
 mod report;
@@ -42,6 +44,7 @@ enum Command {
     Figure(figure::Arguments),
     Check(check::Arguments),
     Experiment(experiment::Arguments),
+    Material(material::Arguments),
     Run(run::Arguments),
     Replay(replay::Arguments),
     Scan(scan::Arguments),
@@ -62,6 +65,7 @@ fn run(arguments: Arguments) -> Result<ExitCode> {
         Command::Figure(arguments) => figure::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Experiment(arguments) => experiment::run(&arguments),
+        Command::Material(arguments) => material::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Scan(arguments) => scan::run(&arguments),

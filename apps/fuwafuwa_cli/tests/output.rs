@@ -12,16 +12,18 @@ use std::process::Command;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_fuwafuwa");
 
-/// Writes `cube.nii`, a scan of a cube.
-fn write_scan(folder: &Path) {
+/// Writes `cube.nii`, a scan of a cube, and `curve.csv`, a measured curve.
+fn write_inputs(folder: &Path) {
     fs::write(folder.join("cube.nii"), sample::cube()).unwrap();
+    let curve = "strain,stress_kpa\n0.1,3\n0.2,5\n0.4,9\n0.8,15\n";
+    fs::write(folder.join("curve.csv"), curve).unwrap();
 }
 
 #[test]
 fn every_command_survives_closed_pipes_and_tells_of_full_disks() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    write_scan(folder);
+    write_inputs(folder);
     let record = "run drop --frames 2 --set body.n=8 --record drop.rec";
     let run = Command::new(PROGRAM)
         .current_dir(folder)
@@ -44,6 +46,8 @@ fn every_command_survives_closed_pipes_and_tells_of_full_disks() {
         "replay drop.rec --json",
         "scan cube.nii --resolution 11",
         "scan cube.nii --resolution 11 --json --out cube.toml",
+        "material fit curve.csv",
+        "material fit curve.csv --json --plot curve.svg",
         "bench --n 8",
         "bench --n 8 --json",
     ] {
@@ -55,7 +59,7 @@ fn every_command_survives_closed_pipes_and_tells_of_full_disks() {
 fn files_stay_intact_on_full_disks() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    write_scan(folder);
+    write_inputs(folder);
     fs::create_dir(folder.join("figures")).unwrap();
     for (arguments, files) in [
         (
@@ -75,6 +79,7 @@ fn files_stay_intact_on_full_disks() {
             "scan cube.nii --resolution 11 --out cube.toml",
             &["cube.toml", "cube.vox"],
         ),
+        ("material fit curve.csv --plot curve.svg", &["curve.svg"]),
         (
             "figure 2 --out figures",
             &["figures/figure_2.png", "figures/figure_2.svg"],

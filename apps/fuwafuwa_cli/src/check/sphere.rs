@@ -123,7 +123,7 @@ pub fn check(progress: &Progress) -> Result<Findings> {
 /// Returns the force of a rigid plate that presses into a ball by `depth` widths, as a multiple of Young's modulus and
 /// the squared radius: a power law between the entries of [`FORCES`]. A second, equal ball acts as a plate, by
 /// symmetry.
-fn reference(depth: f64) -> f64 {
+pub fn reference(depth: f64) -> f64 {
     let last = FORCES.len() - 2;
     let place = (0..last).find(|&k| depth < FORCES[k + 1].0).unwrap_or(last);
     let [(low, from), (high, to)] = [FORCES[place], FORCES[place + 1]];

@@ -2,9 +2,7 @@
 
 use super::Setup;
 use anyhow::{Result, bail};
-use fuwafuwa::{
-    Damping, Dim, DimVector, Event, NodeId, SoftBody, StiffBodies, Vec3, World, WorldConfig,
-};
+use fuwafuwa::{Damping, Dim, DimVector, NodeId, SoftBody, StiffBodies, Vec3, World, WorldConfig};
 use std::time::Instant;
 
 /// Slow pull of a body by its held nodes.
@@ -28,10 +26,6 @@ pub struct Growth {
     pub way: f64,
     /// Force on the nodes that are pulled along the positive direction of an axis, at the growth [N].
     pub load: f64,
-    /// First place where a node was split [m].
-    pub at: Vec3,
-    /// Way [m] and force [N] at each tick.
-    pub course: Vec<(f64, f64)>,
     /// Discretisation; the number of voxels is that of the caller.
     pub setup: Setup,
 }
@@ -67,15 +61,11 @@ impl<D: Dim> Pull<D> {
         let mut world = still_world::<D>()?;
         let body = world.add_soft_body(self.body)?;
         let tick = world.config().tick;
-        let (mut course, mut way, mut load) = (Vec::new(), 0.0, 0.0f64);
+        let (mut way, mut load) = (0.0, 0.0);
         while way < self.speed * self.longest {
             let report = world.step();
             way += self.speed * tick;
             if report.nodes_split > 0 {
-                let splits = world.events().iter().find_map(|event| match event {
-                    Event::NodeSplit { point, .. } => Some(point.to_vec3()),
-                    _ => None,
-                });
                 let setup = Setup {
                     n,
                     substeps: Some(report.substeps),
@@ -84,8 +74,6 @@ impl<D: Dim> Pull<D> {
                 return Ok(Growth {
                     way: f64::from(way),
                     load,
-                    at: splits.unwrap_or_default(),
-                    course,
                     setup,
                 });
             }
@@ -95,7 +83,6 @@ impl<D: Dim> Pull<D> {
                 .map(|force| f64::from(-force.element_sum()))
                 .sum::<f64>();
             load = force;
-            course.push((f64::from(way), force));
         }
         bail!("no crack grew in {} s", self.longest)
     }
