@@ -25,6 +25,9 @@ use crate::soft_body::element_law::{Elasticity, Matrix, cofactor};
 /// An element of a hyperelastic material becomes stiffer where it is stretched. The world takes shorter substeps
 /// while a body is stiffer than at rest, see [`SoftBody::longest_substep`](crate::SoftBody::longest_substep).
 ///
+/// Graded elements of a hyperelastic material become unstable under a tension in all directions of several times the shear
+/// modulus. Use [`Grading::Uniform`](crate::Grading) there.
+///
 /// Ignored under [`Law::Endo2004`](crate::Law::Endo2004).
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
