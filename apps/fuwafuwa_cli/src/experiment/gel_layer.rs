@@ -17,8 +17,8 @@
 //! critical weight [Southwell 1932]. The strip is glued to walls at its ends, and the nodes at the walls are where the base
 //! state has them. The ripple has an envelope of half a cosine, which raises the critical weight by 0.2 %.
 //!
-//! The elements are uniform. A layer of graded elements ripples at 0.7 of the critical weight, in patterns as fine as
-//! the elements: under a hydrostatic tension of several µ, as at the dish, graded elements are unstable.
+//! The elements are uniform. A layer of graded elements ripples at 0.7 of the critical weight already: graded elements seem
+//! to be unstable under the hydrostatic tension of several µ at the dish.
 
 use super::{Bound, Record, Role, Row, Setup};
 use crate::check::bar::{fix_where, still};
