@@ -58,8 +58,9 @@ const BLOCK: [usize; 3] = [48, 24, 48];
 /// Radius of the rigid ball [m], and depths as shares of it.
 const RADIUS: f64 = 0.4;
 const DEPTHS: [f64; 3] = [0.05, 0.1, 0.25];
-/// Number of rounds of the iteration. Each round changes the force about a tenth as much as the round before.
-const ROUNDS: u32 = 4;
+/// Number of rounds of the iteration. The change of the force falls to a fifth per round at the smallest depth, and to
+/// half at the largest.
+const ROUNDS: u32 = 10;
 /// Time in which the ball is pressed in, and time in which the block settles [s].
 const PRESSING: f64 = 0.3;
 const SETTLING: f64 = 0.7;

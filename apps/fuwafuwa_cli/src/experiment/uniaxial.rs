@@ -11,8 +11,8 @@
 //! Robotics (2020), [doi:10.1089/soro.2019.0115](https://doi.org/10.1089/soro.2019.0115). Rubber: L. R. G. Treloar,
 //! *Stress-strain data for vulcanised rubber under various types of deformation*, Transactions of the Faraday Society 40
 //! (1944). The strain of the silicones is that of the crosshead: their stress begins at a strain of some 0.01 to 0.04, which
-//! is subtracted as slack, see [`fit::find_slack`]. The slack is uncertain by about 0.01, because the machine starts within
-//! the first points; stresses at a strain of 0.25 are uncertain by some 5 % for this reason.
+//! is subtracted as slack, see [`fit::find_slack`]. The slack is uncertain by 0.01 or more, because the machine starts within
+//! the first points; 0.01 changes the stress at a strain of 0.25 by 3 %.
 //!
 //! The Yeoh law is fitted as `fuwafuwa material fit` fits it. The law itself misses the curves by 0.1 to 2.3 % of their
 //! largest stress; the engine must miss them by at most twice as much. It differs from the law because its Poisson's
