@@ -37,7 +37,7 @@ use app_shell::{Clock, Forces, Pads, Theme};
 pub use bout::CurrentRound;
 pub use controls::{Controls, ScreenButton};
 use drawing::DrawingWatch;
-pub use editing::{Drag, Editor, EditorPart, GRID, TURN};
+pub use editing::{Drag, Editor, EditorOrigin, EditorPart, GRID, TURN};
 pub use ending::Ending;
 use fuwafuwa::DEFAULT_TICK;
 pub use making::{Cursor, DrawingTool, Flaws, Maker, WIDTHS};
@@ -72,8 +72,8 @@ pub struct Game {
     pub chosen: usize,
     /// Returns today's date, in the form 2026-11-28. `None` = there is no level of the day.
     pub calendar: Option<fn() -> String>,
-    /// Levels that the player removed, the last one last, and their texts.
-    removed: Vec<(Arc<Level>, String)>,
+    /// Levels that the player removed, the last one last.
+    removed: Vec<RemovedLevel>,
     /// Level of the day, which is also in [`Self::levels`].
     day: Option<Arc<Level>>,
     /// Progress of the ending.
@@ -114,6 +114,15 @@ pub struct Game {
     /// Number of recorded rounds that the title screen has shown.
     attracted: usize,
     drawing: DrawingWatch,
+}
+
+/// A level that the player removed.
+struct RemovedLevel {
+    level: Arc<Level>,
+    /// Text of the level as it was stored.
+    text: String,
+    /// Index in [`Game::levels`] that it had.
+    place: usize,
 }
 
 impl Game {

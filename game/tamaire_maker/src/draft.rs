@@ -154,6 +154,11 @@ impl Draft {
         self.preview.as_ref().unwrap_or(self.history.present())
     }
 
+    /// Returns the scene without the preview. Equal pointers mean equal scenes.
+    pub fn shared_before(&self) -> &Arc<Scene> {
+        self.history.present()
+    }
+
     /// Returns the scene without the preview.
     pub fn scene_before(&self) -> &Scene {
         self.history.present()
@@ -256,6 +261,21 @@ pub fn set_name(scene: &mut Scene, language: Language, name: &str) {
         Language::English => game.name.en = name,
         Language::Japanese => game.name.ja = Some(name).filter(|name| !name.is_empty()),
     }
+}
+
+/// Returns a name without the number at its end, and that number, if it has one below 100.
+pub fn without_number(name: &str) -> (&str, Option<usize>) {
+    let parts = name.rsplit_once(' ');
+    let numbered = parts.and_then(|(stem, number)| Some((stem, number.parse::<usize>().ok()?)));
+    match numbered.filter(|(stem, number)| !stem.is_empty() && *number < 100) {
+        Some((stem, number)) => (stem, Some(number)),
+        None => (name, None),
+    }
+}
+
+/// Returns whether a name is that of a new level, with or without a number.
+pub fn is_usual_name(name: &str, language: Language) -> bool {
+    without_number(name).0 == Draft::blank(2).name(language)
 }
 
 /// Returns about how much memory a scene takes [bytes].

@@ -9,6 +9,7 @@ mod arrangement;
 mod bounds;
 mod clip;
 mod goals;
+mod groups;
 mod layers;
 mod motion;
 mod movement;
@@ -20,6 +21,7 @@ pub use additions::{Kind, add};
 pub use arrangement::{Guide, aligned, free_place, snapped};
 pub use bounds::{bounds, union};
 pub use clip::{Clip, copy, paste};
+pub use groups::group_of;
 pub use layers::{Stops, set_stops, stops_of};
 pub use movement::{rotate, stretch, translate};
 pub use removal::{Dropped, Removed, remove};
@@ -151,34 +153,6 @@ fn kind_of_obstacle(scene: &Scene, index: usize) -> Option<Kind> {
         _ if text.capsule.is_some() => Kind::Bar,
         _ => Kind::Wall,
     })
-}
-
-/// Distance up to which a bar touches the basket that it encloses [m].
-const TOUCHES: f32 = 0.06;
-/// Length by which a bar may be longer than its basket [m].
-const LONGER: f32 = 0.4;
-
-/// Returns a basket and the obstacles that enclose it, and any other item alone.
-pub fn with_bars(scene: &Scene, item: Item) -> Vec<Item> {
-    let mut all = vec![item];
-    let Item::Basket(_) = item else {
-        return all;
-    };
-    let Some([low, high]) = bounds(scene, item) else {
-        return all;
-    };
-    let reach = Vec3::splat(TOUCHES);
-    let bars = (0..scene.obstacle.len())
-        .map(Item::Obstacle)
-        .filter(|&bar| {
-            let Some([from, to]) = bounds(scene, bar) else {
-                return false;
-            };
-            let touches = from.cmple(high + reach).all() && to.cmpge(low - reach).all();
-            touches && (to - from).cmple(high - low + LONGER).all()
-        });
-    all.extend(bars);
-    all
 }
 
 /// Returns those of the items that the scene has, without repetitions.

@@ -1,11 +1,11 @@
 //! Editing of a level: selection, drags, and the room that shows the level.
 
-use super::sharing::{append_to_names, is_made_here, origin_of};
+use super::sharing::{is_made_here, origin_of};
 use super::{Game, Screen};
 use crate::session::Session;
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 use tamaire_maker::draft::Draft;
 use tamaire_maker::items::{self, Clip, Dropped, Guide, Item, Kind};
 use tamaire_play::Level;
@@ -55,6 +55,10 @@ pub struct Editor {
     pub turned: Option<Vec<Item>>,
     /// Lines on which the dragged things align with others.
     pub guides: Vec<Guide>,
+    /// Selections at earlier states of the level, which undo and redo restore.
+    remembered: Vec<(Weak<Scene>, Vec<Item>)>,
+    /// Number of levels that the editor has opened. Its strip begins at the start for each of them.
+    pub opened: u32,
     /// Part that is shown.
     pub part: EditorPart,
     /// Reason why the level cannot be played.
@@ -65,6 +69,14 @@ pub struct Editor {
     is_test: bool,
     /// Whether time runs back from a test to the editor.
     returns: bool,
+}
+
+/// Place from which the editor was opened, if it is not the screen below it.
+pub enum EditorOrigin {
+    /// The paper.
+    Paper,
+    /// The pause menu of a round in this level.
+    Round(Arc<Level>),
 }
 
 /// Drag of the selection.
@@ -102,11 +114,28 @@ impl Editor {
             .contains(&item)
     }
 
+    /// Remembers the selection in a state of the level.
+    fn remember(&mut self, scene: &Arc<Scene>) {
+        let is_known = |known: &Weak<Scene>| std::ptr::eq(known.as_ptr(), Arc::as_ptr(scene));
+        let remembered = &mut self.remembered;
+        remembered.retain(|(known, _)| known.strong_count() > 0 && !is_known(known));
+        remembered.push((Arc::downgrade(scene), self.selection.clone()));
+    }
+
+    /// Restores the selection that was remembered for a state of the level, or selects nothing.
+    fn recall(&mut self, scene: &Arc<Scene>) {
+        let is_known = |known: &Weak<Scene>| std::ptr::eq(known.as_ptr(), Arc::as_ptr(scene));
+        let mut remembered = self.remembered.iter();
+        let found = remembered.find(|(known, _)| is_known(known));
+        self.selection = found.map_or_else(Vec::new, |(_, items)| items.clone());
+    }
+
     /// Forgets everything except what was copied and whether things snap.
     fn reset(&mut self) {
         let snaps = self.snaps;
         *self = Self {
             clip: self.clip.take(),
+            opened: self.opened.wrapping_add(1),
             snaps,
             ..Self::default()
         };
@@ -157,6 +186,13 @@ impl Game {
             Some(index) => self.edit(index),
             None => self.edit_level(&level),
         }
+        self.maker.came_from = Some(EditorOrigin::Round(level));
+    }
+
+    /// Opens the page on which a level of the list gets another name.
+    pub fn rename(&mut self, index: usize) {
+        self.edit(index);
+        self.go(Screen::Finish);
     }
 
     /// Selects everything.
@@ -178,10 +214,12 @@ impl Game {
 
     /// Opens the editor with the room of the drawing.
     pub fn edit_room(&mut self) {
+        let is_on_paper = self.screens.has(Screen::Paper);
         self.keep_replaced_level();
         self.maker.take_room();
         self.number_name();
         self.begin_editing(None);
+        self.maker.came_from = is_on_paper.then_some(EditorOrigin::Paper);
         // The room was never kept.
         self.maker.saved = None;
     }
@@ -190,7 +228,7 @@ impl Game {
     fn begin_editing(&mut self, origin: Option<String>) {
         let maker = &mut self.maker;
         (maker.won, maker.check, maker.typed_name) = (None, None, None);
-        maker.origin = origin;
+        (maker.origin, maker.came_from) = (origin, None);
         maker.saved = Some(maker.draft.scene().clone());
         maker.editor.reset();
         self.go(Screen::Editor);
@@ -198,12 +236,22 @@ impl Game {
 
     /// Gives a new level a name that no other level of the player has.
     fn number_name(&mut self) {
-        let made = self.levels.iter().filter(|level| is_made_here(&level.id));
-        let number = made.count() + 1;
-        if number > 1 {
-            let ending = format!(" {number}");
-            let draft = &mut self.maker.draft;
-            draft.restart(|scene| append_to_names(scene, &ending));
+        let mut draft = self.maker.draft.clone();
+        self.take_free_name(&mut draft, 1);
+        self.maker.draft = draft;
+    }
+
+    /// Goes back to where the editor was opened, after it was closed.
+    pub(super) fn return_from_editor(&mut self) {
+        match self.maker.came_from.take() {
+            Some(EditorOrigin::Paper) => self.open_paper(),
+            Some(EditorOrigin::Round(level)) => {
+                // An own level may have been changed.
+                let listed = self.listed(&level).map(|index| self.levels[index].clone());
+                self.play(&listed.unwrap_or(level));
+                self.go(Screen::Paused);
+            }
+            None => {}
         }
     }
 
@@ -232,16 +280,24 @@ impl Game {
 
     /// Makes a change of the level, as one step of undo.
     pub fn change_level(&mut self, change: impl FnOnce(&mut Scene)) {
+        self.remember_selection();
         self.maker.draft.change(change);
         self.settle();
     }
 
     /// Shows a change of the level that is not finished, such as that of a drag.
     pub fn preview_level(&mut self, change: impl FnOnce(&mut Scene)) {
+        self.remember_selection();
         self.maker.draft.preview(change);
         if !self.maker.editor.is_slow {
             self.show_draft();
         }
+    }
+
+    /// Remembers the selection for undo. Called before each change.
+    fn remember_selection(&mut self) {
+        let maker = &mut self.maker;
+        maker.editor.remember(maker.draft.shared_before());
     }
 
     /// Ends a drag.
@@ -282,29 +338,85 @@ impl Game {
 
     /// Goes back to the level before the last change, or forward again.
     pub fn undo_edit(&mut self, forward: bool) {
+        self.remember_selection();
         let has_changed = match forward {
             true => self.maker.draft.redo(),
             false => self.maker.draft.undo(),
         };
         if has_changed {
+            let maker = &mut self.maker;
+            maker.editor.recall(maker.draft.shared_before());
             self.settle();
         }
     }
 
-    /// Selects an item, or takes it out of the selection if presses add to it.
+    /// Selects an item with what belongs to it, or takes it out of the selection if presses add to it. If the item is already
+    /// selected as a part of another one, it is selected alone.
     pub fn select(&mut self, item: Item) {
+        let group = items::group_of(self.maker.draft.scene(), item);
         let editor = &mut self.maker.editor;
-        let is_selected = editor.selection.contains(&item);
-        match (editor.is_adding, is_selected) {
-            (true, true) => editor.selection.retain(|known| *known != item),
-            (true, false) => editor.selection.push(item),
-            (false, _) => editor.selection = items::with_bars(self.maker.draft.scene(), item),
+        let is_part = group.first() != Some(&item);
+        let is_group = is_same(&editor.selection, &group);
+        let chosen = if is_part && is_group {
+            vec![item]
+        } else {
+            group
+        };
+        self.choose(chosen);
+    }
+
+    /// Selects an item without what belongs to it.
+    pub fn select_alone(&mut self, item: Item) {
+        self.choose(vec![item]);
+    }
+
+    /// Selects items. If presses add to the selection, adds them, or takes them out if all are selected.
+    fn choose(&mut self, items: Vec<Item>) {
+        let editor = &mut self.maker.editor;
+        let are_selected = items.iter().all(|item| editor.selection.contains(item));
+        match (editor.is_adding, are_selected) {
+            (true, true) => editor.selection.retain(|known| !items.contains(known)),
+            (true, false) => {
+                let selection = &mut editor.selection;
+                let new = items.into_iter().filter(|item| !selection.contains(item));
+                let new: Vec<Item> = new.collect();
+                selection.extend(new);
+            }
+            (false, _) => editor.selection = items,
         }
         editor.moves_by_keys &= !editor.selection.is_empty();
         editor.part = match editor.selection.is_empty() {
             true => EditorPart::Things,
             false => EditorPart::Selection,
         };
+    }
+
+    /// Selects what a drag that begins on an item moves: the selection if it has the item, with all that belongs to a basket,
+    /// body or board.
+    pub fn select_to_drag(&mut self, item: Item) {
+        let group = items::group_of(self.maker.draft.scene(), item);
+        let editor = &mut self.maker.editor;
+        if !editor.selection.contains(&item) {
+            editor.selection = group;
+        } else if group.first() == Some(&item) {
+            let new = group.into_iter();
+            let new: Vec<Item> = new
+                .filter(|item| !editor.selection.contains(item))
+                .collect();
+            editor.selection.extend(new);
+        }
+        editor.part = EditorPart::Selection;
+    }
+
+    /// Returns the selected item, or the main one of selected items that belong together.
+    pub fn main_item(&self) -> Option<Item> {
+        let selection = &self.maker.editor.selection;
+        let &first = selection.first()?;
+        let group = items::group_of(self.maker.draft.scene(), first);
+        match selection.len() {
+            1 => Some(first),
+            _ => is_same(selection, &group).then(|| group[0]),
+        }
     }
 
     /// Returns the name of an item of the level that is being edited.
@@ -322,6 +434,7 @@ impl Game {
 
     /// Makes a change that returns the items to be selected after it.
     fn change_and_select(&mut self, change: impl FnOnce(&mut Scene) -> Vec<Item>) {
+        self.remember_selection();
         let selection = self.maker.draft.change(change);
         self.maker.editor.selection = selection;
         self.maker.editor.part = EditorPart::Selection;
@@ -337,10 +450,27 @@ impl Game {
         if self.maker.editor.selection.is_empty() {
             self.notify(self.making().not_pasted.to_string());
         }
+        self.tell_of_leash(kind);
+    }
+
+    /// Tells that a new rope or spring is tied to the hand, which a player may not expect.
+    fn tell_of_leash(&mut self, kind: Kind) {
+        let scene = self.maker.draft.scene();
+        let is_on_hand = self.maker.editor.selection.iter().any(|item| match item {
+            Item::Joint(index) => {
+                let mut ends = scene.joint[*index].anchors.iter();
+                ends.any(|end| end.hand.is_some())
+            }
+            _ => false,
+        });
+        if is_on_hand && matches!(kind, Kind::Rope | Kind::Spring) {
+            self.notify(self.making().on_hand.to_string());
+        }
     }
 
     /// Removes the selection.
     pub fn remove_selection(&mut self) {
+        self.remember_selection();
         let selection = self.maker.editor.selection.clone();
         let removed = self
             .maker
@@ -480,4 +610,9 @@ impl Game {
         }
         Some(HOMEWARD * seconds)
     }
+}
+
+/// Returns whether two lists have the same items.
+fn is_same(one: &[Item], other: &[Item]) -> bool {
+    one.len() == other.len() && one.iter().all(|item| other.contains(item))
 }

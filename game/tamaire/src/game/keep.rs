@@ -1,6 +1,6 @@
 //! Saving and loading, and the messages about them.
 
-use super::{Game, Screen};
+use super::{Game, RemovedLevel, Screen};
 use crate::platform::{Damage, Entry, Kind, Location, StorageEvent};
 use std::sync::Arc;
 use tamaire_play::{Level, Replay, ReplayError};
@@ -54,15 +54,20 @@ impl Game {
 
     /// Returns the level that was removed last.
     pub fn removed_level(&self) -> Option<&Level> {
-        self.removed.last().map(|(level, _)| level.as_ref())
+        self.removed.last().map(|removed| removed.level.as_ref())
     }
 
-    /// Brings back the level that was removed last.
+    /// Brings back the level that was removed last, to its place in the list.
     pub fn bring_back(&mut self) {
-        if let Some((level, text)) = self.removed.pop() {
-            self.files.keep_level_text(&level.id, text);
-            self.levels.retain(|known| known.id != level.id);
-            self.levels.push(level);
+        let Some(RemovedLevel { level, text, place }) = self.removed.pop() else {
+            return;
+        };
+        self.files.keep_level_text(&level.id, text);
+        self.levels.retain(|known| known.id != level.id);
+        let place = place.min(self.levels.len());
+        self.levels.insert(place, level);
+        if self.chosen >= place {
+            self.chosen += 1;
         }
     }
 
@@ -77,8 +82,12 @@ impl Game {
         };
         let text = self.text_of(&level).filter(is_current);
         let text = text.or_else(|| level.text_to_keep().ok());
-        self.removed.extend(text.map(|text| (level.clone(), text)));
         self.files.remove_level(&level.id);
+        self.removed.extend(text.map(|text| RemovedLevel {
+            level,
+            text,
+            place: index,
+        }));
         if self.chosen >= index {
             self.chosen = self.chosen.saturating_sub(1);
         }

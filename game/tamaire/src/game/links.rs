@@ -72,6 +72,10 @@ impl Game {
 
     /// Opens a link: a level that the game has is started; another one, and a round, is offered.
     pub fn open_link(&mut self, link: &str) {
+        // The link may be one to the level in the editor.
+        if self.screens.has(Screen::Editor) {
+            self.keep_replaced_level();
+        }
         match Link::read(link) {
             Ok(Link::Level(level)) => match self.place_of_known(&level) {
                 Some(index) => self.start(index),

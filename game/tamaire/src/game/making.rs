@@ -1,7 +1,7 @@
 //! Making of bodies and levels: the paper, the block of voxels, and the level into which they go.
 
 use super::sharing::Summary;
-use super::{Editor, Game, Screen};
+use super::{Editor, EditorOrigin, Game, Screen};
 use crate::session::Session;
 use egui::Vec2;
 use fuwafuwa::Vec3;
@@ -141,6 +141,8 @@ pub struct Maker {
     pub typed_name: Option<String>,
     /// Name of the level from which this one is made, unless it is the player's own.
     pub origin: Option<String>,
+    /// Place from which the editor was opened, unless it is the screen below it.
+    pub(super) came_from: Option<EditorOrigin>,
     /// Scene of the level when it was opened or kept last. `None` for a room that was never kept.
     pub saved: Option<Scene>,
     /// Checks of the level, from when they are first shown.
@@ -194,6 +196,7 @@ impl Default for Maker {
             typed_name: None,
             saved: Some(Draft::blank(2).scene().clone()),
             origin: None,
+            came_from: None,
             check: None,
             summary: None,
             won: None,
@@ -474,7 +477,7 @@ impl Game {
 
     /// Opens the paper with the selected body.
     pub fn draw_selected(&mut self) {
-        let [Item::Body(index)] = self.maker.editor.selection[..] else {
+        let Some(Item::Body(index)) = self.main_item() else {
             return;
         };
         let maker = &mut self.maker;

@@ -70,7 +70,7 @@ impl Game {
         self.own_levels().next().is_some()
     }
 
-    fn own_levels(&self) -> impl Iterator<Item = &Arc<Level>> {
+    pub(super) fn own_levels(&self) -> impl Iterator<Item = &Arc<Level>> {
         let own = (0..self.levels.len()).filter(|&index| self.is_own(index));
         own.map(|index| &self.levels[index])
     }
@@ -93,7 +93,12 @@ impl Game {
             return None;
         }
         let id = stored_id(level);
-        (0..self.levels.len()).find(|&index| self.is_own(index) && self.levels[index].id == id)
+        let is_earlier = |index: &usize| {
+            // Earlier versions of the game kept the ending of the file in the id.
+            let known = &self.levels[*index].id;
+            self.is_own(*index) && known.strip_suffix(".toml").unwrap_or(known) == id
+        };
+        (0..self.levels.len()).find(is_earlier)
     }
 
     /// Stores a level in place of another own one, under its id.
@@ -115,19 +120,21 @@ impl Game {
 
     /// Whether a level has this id. Some file systems do not distinguish upper and lower case.
     pub(super) fn is_taken(&self, id: &str) -> bool {
-        let removed = self.removed.iter().map(|(level, _)| level);
+        let removed = self.removed.iter().map(|removed| &removed.level);
         let known = self.levels.iter().chain(removed);
         let mut ids = known.map(|level| level.id.to_lowercase());
         ids.any(|known| known == id.to_lowercase()) || self.files.level_text(id).is_some()
     }
 }
 
-/// Returns the id under which a level from elsewhere is stored, if it is free. A level of the day that was sent does not take
-/// the place of today's.
+/// Returns the id under which a level from elsewhere is stored, if it is free: without the ending of level files, which its
+/// file gets again. A level of the day that was sent does not take the place of today's.
 fn stored_id(level: &Level) -> String {
+    let id = level.id.strip_suffix(".toml");
+    let id = id.filter(|id| !id.is_empty()).unwrap_or(&level.id);
     match is_daily(level) {
-        true => format!("sent-{}", level.id),
-        false => foreign_id(&level.id),
+        true => format!("sent-{id}"),
+        false => foreign_id(id),
     }
 }
 

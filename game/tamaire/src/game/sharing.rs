@@ -7,13 +7,15 @@ use crate::words::MakingWords;
 use fuwafuwa_scenes::Scene;
 use std::sync::Arc;
 use tamaire_maker::check::Check;
-use tamaire_maker::draft::{Draft, Language, name_in, set_name};
+use tamaire_maker::draft::{Draft, Language, is_usual_name, name_in, set_name, without_number};
 use tamaire_play::level::{LevelError, MAX_KEPT_BYTES};
 use tamaire_play::pack::without_marks;
 use tamaire_play::{Level, Replay};
 
 /// Maximum length of the name of a level or of its maker [characters].
 pub const MOST_NAME: usize = 40;
+/// All languages of names.
+const LANGUAGES: [Language; 2] = [Language::English, Language::Japanese];
 /// Beginning of the ids of levels that the player makes. Levels from elsewhere get other ids.
 const MADE_HERE: &str = "my-level-";
 /// Share of a frame for the checks, and the minimum and maximum of this time [s]. It grows with the frame, so that checks
@@ -95,22 +97,61 @@ impl Game {
     }
 
     /// Names the level that is being edited, in the language of the player. In the other language it gets the same name,
-    /// unless the player has given it another one there. The name is a preview, see [`Game::settle_preview`].
+    /// unless a name was given to it there. The name is a preview, see [`Game::settle_preview`].
     pub fn name_draft(&mut self, name: &str) {
         let language = self.language_of_names();
         let other = match language {
             Language::English => Language::Japanese,
             Language::Japanese => Language::English,
         };
-        let draft = &self.maker.draft;
-        let follows = draft.name(other).is_empty()
-            || draft.name(other) == draft.name(language)
-            || draft.name(other) == draft.first_name(other);
+        let follows = self.follows_name(other, language);
         // Without a Japanese name, the English one is shown.
         let other_name = if other == Language::English { name } else { "" };
         let names = [(language, name), (other, other_name)];
         let count = if follows { 2 } else { 1 };
         self.maker.draft.set_names(&names[..count]);
+    }
+
+    /// Whether the name in the language `other` follows a new one in `language`: it is empty, equal, that of a new level, or
+    /// that of a level of others of which this is a copy.
+    fn follows_name(&self, other: Language, language: Language) -> bool {
+        let draft = &self.maker.draft;
+        let [known, renamed] = [other, language].map(|it| name_in(draft.scene_before(), it));
+        let is_of_others = self.maker.origin.is_some() && known == draft.first_name(other);
+        known.is_empty() || known == renamed || is_usual_name(known, other) || is_of_others
+    }
+
+    /// Gives a draft names that no own level has, with the same number in all languages, at least `least`. A first level gets
+    /// no number.
+    pub(super) fn take_free_name(&self, draft: &mut Draft, least: usize) {
+        let names = LANGUAGES.map(|it| draft.name(it).to_string());
+        let stems = names.each_ref().map(|name| without_number(name));
+        let own = stems.iter().filter_map(|(_, number)| *number).max();
+        let first = own.map_or(least, |number| number + 1);
+        let with = |stem: &str, number: usize| match number {
+            1 => stem.to_string(),
+            _ => format!("{stem} {number}"),
+        };
+        let is_free = |number: &usize| {
+            LANGUAGES
+                .into_iter()
+                .zip(&stems)
+                .all(|(language, (stem, _))| {
+                    let name = with(stem, *number);
+                    let mut own = self.own_levels();
+                    stem.is_empty() || !own.any(|level| name_in(level.scene(), language) == name)
+                })
+        };
+        let Some(number) = (first..).find(is_free) else {
+            return;
+        };
+        draft.restart(|scene| {
+            for (language, (stem, _)) in LANGUAGES.into_iter().zip(&stems) {
+                if !stem.is_empty() {
+                    set_name(scene, language, &with(stem, number));
+                }
+            }
+        });
     }
 
     fn language_of_names(&self) -> Language {
@@ -203,8 +244,11 @@ impl Game {
         self.check_text(&text)?;
         self.maker.draft = draft;
         let level = Arc::new(level);
-        self.levels.retain(|known| known.id != level.id);
-        self.levels.push(level.clone());
+        // A changed level keeps its place in the list.
+        match self.levels.iter_mut().find(|known| known.id == level.id) {
+            Some(known) => *known = level.clone(),
+            None => self.levels.push(level.clone()),
+        }
         self.files.keep_level_text(&level.id, text);
         self.maker.saved = Some(level.scene().clone());
         // From now on, this is the player's own level.
@@ -230,7 +274,7 @@ impl Game {
         let mut level = Level::clone(&self.levels[index]);
         let text = self.text_of(&level);
         let mut draft = Draft::of_level(&level, text.as_deref());
-        draft.restart(|scene| append_to_names(scene, " 2"));
+        self.take_free_name(&mut draft, 2);
         if !is_made_here(&level.id) {
             draft.set_origin(&origin_of(&level));
         }
@@ -256,7 +300,7 @@ impl Game {
     fn free_id(&self, level: &Level) -> String {
         let is_own = self.maker.origin.is_none() && is_made_here(&level.id);
         let mut removed = self.removed.iter();
-        let is_removed = removed.any(|(known, _)| known.id == level.id);
+        let is_removed = removed.any(|known| known.level.id == level.id);
         match is_own && !is_removed {
             true => level.id.clone(),
             false => self.new_id(),
@@ -314,10 +358,11 @@ impl Game {
         maker.saved.as_ref() != Some(maker.draft.scene())
     }
 
-    /// Leaves the editor. A changed level is kept. One without a name, or that cannot be played yet, stays in the making until
-    /// another level is opened.
+    /// Leaves the editor to where it was opened: the list, the paper, or the pause menu of a round. A changed level is kept.
+    /// One without a name, or that cannot be played yet, stays in the making until another level is opened.
     pub fn leave_editor(&mut self) {
         self.close_screen(Screen::Editor);
+        self.return_from_editor();
     }
 
     /// Keeps the level whose editor was closed if it was changed, and tells the player.
@@ -340,16 +385,6 @@ impl Game {
     pub(super) fn keep_silently(&mut self) -> bool {
         self.end_drag();
         self.has_unsaved_level() && self.store_draft().is_ok()
-    }
-}
-
-/// Adds an ending to the names of a level.
-pub(super) fn append_to_names(scene: &mut Scene, ending: &str) {
-    for language in [Language::English, Language::Japanese] {
-        let name = name_in(scene, language).to_string();
-        if !name.is_empty() {
-            set_name(scene, language, &format!("{name}{ending}"));
-        }
     }
 }
 

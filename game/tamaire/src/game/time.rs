@@ -35,7 +35,8 @@ impl Game {
         } else if self.wants_rewind() {
             self.run_back(seconds);
             self.bout.effects.advance(seconds);
-        } else if runs {
+        } else if runs && self.screen() != Screen::Editor {
+            // The room of the editor, to which a test may just have returned, stays as it begins.
             if self.bout.session.is_rewinding() {
                 self.end_rewind();
             }

@@ -52,6 +52,18 @@ pub fn data_folder() -> Option<PathBuf> {
     Some(folders.data_dir().into())
 }
 
+/// Returns a key that sorts names by their letters, without regard to case, and then by the number at their end: `level-2`
+/// comes before `level-10`.
+fn natural(name: &str) -> (String, u64, String) {
+    let digits = name.chars().rev().take_while(char::is_ascii_digit).count();
+    let (stem, number) = name.split_at(name.len() - digits);
+    (
+        stem.to_lowercase(),
+        number.parse().unwrap_or(0),
+        name.to_string(),
+    )
+}
+
 /// Result of a job.
 enum JobResult {
     Note(io::Result<()>),
@@ -200,13 +212,17 @@ impl Files {
         );
     }
 
-    /// Reads the stored levels. They arrive one by one as [`StorageEvent::Level`], the oldest first.
+    /// Reads the stored levels. They arrive one by one as [`StorageEvent::Level`], in the order of their
+    /// names.
     pub fn read_levels(&mut self) {
         let mut found = self.storage.list(Kind::Level).unwrap_or_default();
         found.retain(|entry| !is_aside(&entry.name));
         found.sort_by(|a, b| a.written.cmp(&b.written).then(a.name.cmp(&b.name)));
         let older = found.len().saturating_sub(MOST_LEVELS);
-        for Entry { name, .. } in found.split_off(older) {
+        let mut newest = found.split_off(older);
+        // A changed level keeps its place in the list.
+        newest.sort_by_cached_key(|entry| natural(&entry.name));
+        for Entry { name, .. } in newest {
             let storage = self.storage.clone();
             self.writer
                 .write(move || Ok(read_level(&*storage, &name)), JobResult::Level);

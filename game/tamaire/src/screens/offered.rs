@@ -58,9 +58,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             }
             ui.add_space(12.0);
             let mut options: Vec<(&str, Act)> = Vec::new();
-            if !game.knows(&level) {
-                options.push((said.play, Game::play_offered));
-            }
+            options.push((said.play, Game::play_offered));
             if replay.is_some() {
                 options.push((said.watch, |game| take(game, Game::watch)));
                 options.push((said.race, |game| take(game, Game::race)));

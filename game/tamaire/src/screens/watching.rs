@@ -74,8 +74,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
 /// Draws the position and the length of the replay.
 fn draw_clock(ui: &mut Ui, game: &Game, ticks: [usize; 2]) {
     let theme = game.theme();
+    // The round goes on for a moment after the end of its replay.
+    let ticks = [ticks[0].min(ticks[1]), ticks[1]];
     let [here, all] = ticks.map(|tick| tick as f32 * DEFAULT_TICK);
-    let text = format!("{here:.1} / {all:.1} s");
+    let text = (game.words().seconds_of)(here, all);
     let (rect, _) = ui.allocate_exact_size(vec2(CLOCK, HIGH), Sense::hover());
     let galley = fitted(ui.painter(), &text, 19.0, CLOCK, theme.ink);
     let at = rect.left_center() - vec2(0.0, 0.5 * galley.size().y);

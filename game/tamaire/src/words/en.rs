@@ -82,6 +82,7 @@ pub(super) const WORDS: Words = Words {
     new_best: "New best!",
     let_go: "Let go!",
     seconds: time,
+    seconds_of: |here, all| format!("{here:.1} / {all:.1} s"),
     fill_basket: "fill the basket",
     hopeless: "Not enough of the body is left to win.",
     empty_hand: "The hand holds nothing any more.",

@@ -81,6 +81,7 @@ pub(super) const WORDS: Words = Words {
     new_best: "新記録！",
     let_go: "手をはなして！",
     seconds: time,
+    seconds_of: |here, all| format!("{here:.1} / {all:.1}秒"),
     fill_basket: "かごに 入れる",
     missed: |wish| {
         format!(

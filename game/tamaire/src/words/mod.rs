@@ -91,7 +91,8 @@ fn percent_of_limit(share: f32) -> f64 {
 
 /// Returns a time in tenths of a second, rounded up, so that a time above a limit never looks like the limit.
 fn tenths_above(seconds: f32) -> f32 {
-    (10.0 * seconds - 1e-3).ceil() / 10.0
+    // The sum turns −0 into 0.
+    (10.0 * seconds - 1e-3).ceil() / 10.0 + 0.0
 }
 
 #[cfg(test)]

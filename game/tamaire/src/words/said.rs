@@ -57,6 +57,8 @@ pub struct Words {
     pub let_go: &'static str,
     /// A time in seconds, rounded up to tenths.
     pub seconds: fn(f32) -> String,
+    /// Position in a replay, and its length [s].
+    pub seconds_of: fn(f32, f32) -> String,
     /// Name of the star for the win.
     pub fill_basket: &'static str,
     pub watch: &'static str,

@@ -125,7 +125,7 @@ fn file_is_not_added_to_a_full_list() {
     // A level that the list has needs no room.
     open_file(&mut game, folder.path(), "7.toml", "new version");
     assert_eq!(own(&game).len(), 100);
-    assert!(own(&game).contains(&("7.toml", "new version")));
+    assert!(own(&game).contains(&("7", "new version")));
 }
 
 #[test]
@@ -144,7 +144,7 @@ fn link_to_an_own_level_starts_it_and_adds_nothing() {
     assert_eq!(game.screen(), Screen::Play);
     assert_eq!(game.bout.round().level().id, mine.id);
     assert_eq!(own(&game).len(), before);
-    assert!(own(&game).contains(&("sent-level-1.toml", "friend")));
+    assert!(own(&game).contains(&("sent-level-1", "friend")));
 }
 
 #[test]
@@ -157,7 +157,7 @@ fn link_that_is_opened_twice_adds_one_level() {
     game.go(Screen::Title);
     game.open_link(&sent);
     assert_eq!(game.screen(), Screen::Play);
-    assert_eq!(own(&game), [("sent-level-1.toml", "friend")]);
+    assert_eq!(own(&game), [("sent-level-1", "friend")]);
 }
 
 #[test]
@@ -168,10 +168,10 @@ fn offered_level_stays_offered_while_the_list_is_full() {
     game.play_offered();
     assert_eq!(game.screen(), Screen::Offered);
     assert!(game.offered.is_some());
-    game.take_out(place_of(&game, "7.toml"));
+    game.take_out(place_of(&game, "7"));
     game.play_offered();
     assert_eq!(game.screen(), Screen::Play);
-    assert!(game.offered.is_none() && own(&game).contains(&("sent-level-1.toml", "friend")));
+    assert!(game.offered.is_none() && own(&game).contains(&("sent-level-1", "friend")));
 }
 
 #[test]
@@ -293,7 +293,7 @@ fn level_kept_after_its_removal_leaves_the_removed_one() {
     game.name_draft("second");
     assert!(game.keep_draft());
     game.bring_back();
-    let expected = [("my-level-2", "second"), ("my-level-1", "first")];
+    let expected = [("my-level-1", "first"), ("my-level-2", "second")];
     assert_eq!(own(&game), expected);
 }
 

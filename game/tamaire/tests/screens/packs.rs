@@ -65,7 +65,7 @@ fn dropped_pack_adds_its_levels_in_both_languages() {
             &[("a.toml", "one"), ("b.toml", "two")],
         );
         let begin = || window(Files::in_folder(folder.path().join("data")));
-        let expected = pairs(&[("a.toml", "one"), ("b.toml", "two")]);
+        let expected = pairs(&[("a", "one"), ("b", "two")]);
         let mut first = begin();
         game(&mut first).settings.language = language;
         game(&mut first).start(0);
@@ -76,7 +76,7 @@ fn dropped_pack_adds_its_levels_in_both_languages() {
             (expected.clone(), added.into())
         );
         let chosen = game(&mut first).chosen;
-        assert_eq!(game(&mut first).levels[chosen].id, "a.toml");
+        assert_eq!(game(&mut first).levels[chosen].id, "a");
         drop_file(&mut first, dropped);
         assert_eq!(
             (own(game(&mut first)), notices(&first)),
@@ -113,7 +113,7 @@ fn dropped_folder_adds_its_levels_and_names_what_did_not_open() {
     let mut window = window(Files::nowhere());
     drop_file(&mut window, dropped);
     assert_eq!(screen(&window), Screen::Levels);
-    assert_eq!(own(game(&mut window)), pairs(&[("a.toml", "My cat")]));
+    assert_eq!(own(game(&mut window)), pairs(&[("a", "My cat")]));
     let told = notices(&window);
     assert!(told.contains("1 new level is under Your levels."), "{told}");
     assert!(told.contains("These did not open. broken-0.toml"), "{told}");
@@ -166,14 +166,14 @@ fn pack_replaces_no_level_of_the_same_name() {
     let mut game = open();
     game.open(OpenRequest::at(&second));
     let expected = pairs(&[
-        ("a.toml", "one"),
-        ("B.toml", "two"),
-        ("A-2.toml", "three"),
-        ("classic.toml", "four"),
+        ("a", "one"),
+        ("B", "two"),
+        ("A-2", "three"),
+        ("classic-2", "four"),
     ]);
     assert_eq!(own(&game), expected);
     // The id of a level that can be brought back is taken, too.
-    let place = place_of(&game, "a.toml");
+    let place = place_of(&game, "a");
     game.take_out(place);
     game.open(OpenRequest::at(&pack(
         folder.path(),
@@ -183,10 +183,7 @@ fn pack_replaces_no_level_of_the_same_name() {
     game.bring_back();
     let mut ids: Vec<String> = own(&game).into_iter().map(|(id, _)| id).collect();
     ids.sort();
-    assert_eq!(
-        ids,
-        ["A-2.toml", "B.toml", "a-3.toml", "a.toml", "classic.toml"]
-    );
+    assert_eq!(ids, ["A-2", "B", "a", "a-3", "classic-2"]);
 }
 
 #[test]

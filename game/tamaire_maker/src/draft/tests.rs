@@ -172,3 +172,25 @@ fn link_reads_back(draft: &Draft) -> bool {
     }
     true
 }
+
+#[test]
+fn usual_names_are_those_of_new_levels_with_any_number() {
+    for (name, language, expected) in [
+        ("My level", Language::English, true),
+        ("My level 12", Language::English, true),
+        ("My level", Language::Japanese, false),
+        ("わたしの ステージ 2", Language::Japanese, true),
+        ("My levels", Language::English, false),
+        ("", Language::English, false),
+    ] {
+        assert_eq!(is_usual_name(name, language), expected, "{name}");
+    }
+    for (name, expected) in [
+        ("Cat 2", ("Cat", Some(2))),
+        ("Cat", ("Cat", None)),
+        ("Race 2000", ("Race 2000", None)),
+        (" 2", (" 2", None)),
+    ] {
+        assert_eq!(without_number(name), expected);
+    }
+}

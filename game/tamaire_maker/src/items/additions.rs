@@ -3,8 +3,8 @@
 use super::bounds::grid_size;
 use super::clip::add_basket;
 use super::layers::{Stops, set_stops};
-use super::movement::room_of;
-use super::{Item, MAX_COORDINATE, bounds, first_leader, flat, player_count, rounded};
+use super::movement::{room_of, translate};
+use super::{Item, MAX_COORDINATE, bounds, first_leader, flat, player_count, rounded, union};
 use crate::palette::{crayon, number_in};
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
@@ -111,7 +111,7 @@ impl Kind {
     ];
 }
 
-/// Adds something of a usual size at a position [m], which is brought into the view. Returns the new items. Returns no items
+/// Adds something of a usual size at a position [m], which is brought into the room. Returns the new items. Returns no items
 /// and changes nothing if the level cannot have it: a hand of a third player, a ninth basket, a basket in a scene that is no
 /// level, a joint without a body or hand to hold, or a body whose material has no space.
 pub fn add(scene: &mut Scene, kind: Kind, at: Vec3) -> Vec<Item> {
@@ -119,6 +119,13 @@ pub fn add(scene: &mut Scene, kind: Kind, at: Vec3) -> Vec<Item> {
         return Vec::new();
     }
     let at = in_view(scene, at);
+    let items = made(scene, kind, at);
+    bring_inside(scene, &items);
+    items
+}
+
+/// Adds something at a position in the view. Parts of it may be outside.
+fn made(scene: &mut Scene, kind: Kind, at: Vec3) -> Vec<Item> {
     match kind {
         Kind::Body(form, stuff) => add_body(scene, form, stuff, at),
         Kind::Wall => add_obstacle(scene, boxed(scene.dim, at, [0.25, 0.05, 0.25])),
@@ -161,6 +168,65 @@ fn has_space(scene: &Scene) -> bool {
         scene.field.len(),
     ];
     counts.into_iter().all(|count| count + 8 <= MAX_RIGID) && scene.body.len() < MAX_BODIES
+}
+
+/// Moves new items so that they are inside the walls of the room, with all places to which they move by themselves. Ropes,
+/// springs and pins stay where they are tied.
+fn bring_inside(scene: &mut Scene, items: &[Item]) {
+    let is_tie = |item: &&Item| matches!(item, Item::Joint(_));
+    let boxes = items.iter().filter(|item| !is_tie(item));
+    let boxes = boxes.filter_map(|&item| swept(scene, item));
+    let Some([from, to]) = boxes.reduce(union) else {
+        return;
+    };
+    let [low, high] = walls(scene);
+    let mut by = Vec3::ZERO;
+    for axis in 0..usize::from(scene.dim.clamp(2, 3)) {
+        let (least, most) = (low[axis] - from[axis], high[axis] - to[axis]);
+        by[axis] = match least <= most {
+            true => 0.0_f32.clamp(least, most),
+            false => 0.5 * (least + most),
+        };
+    }
+    translate(scene, items, Vec3::from(numbers(by)));
+}
+
+/// Returns the box around all places that an item takes while it moves by itself [m].
+fn swept(scene: &Scene, item: Item) -> Option<[Vec3; 2]> {
+    let [low, high] = bounds(scene, item)?;
+    let Item::Obstacle(index) = item else {
+        return Some([low, high]);
+    };
+    let text = scene.obstacle.get(index)?;
+    let ends = text.path.iter().map(|&[_, x, y, z]| Vec3::new(x, y, z));
+    let ends = ends.map(|by| [low + by, high + by]);
+    let [low, high] = ends.fold([low, high], union);
+    let turns = text.angular_velocity.is_some();
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let radius = half.x.max(half.y);
+    let half = match turns {
+        true => Vec3::new(radius, radius, half.z),
+        false => half,
+    };
+    Some([middle - half, middle + half])
+}
+
+/// Returns the part of the view that is inside the planes along the axes, which are the walls of a room [m].
+fn walls(scene: &Scene) -> [Vec3; 2] {
+    let [mut low, mut high] = scene.view.map(Vec3::from);
+    let planes = scene.obstacle.iter();
+    for plane in planes.filter_map(|text| text.half_space.as_ref()) {
+        let normal = Vec3::from(plane.normal).normalize_or_zero();
+        for axis in 0..3 {
+            let at = plane.point[axis];
+            if normal[axis] > 0.999 && at < high[axis] {
+                low[axis] = low[axis].max(at);
+            } else if normal[axis] < -0.999 && at > low[axis] {
+                high[axis] = high[axis].min(at);
+            }
+        }
+    }
+    [low, high]
 }
 
 /// Returns the position in the view nearest to another one [m].

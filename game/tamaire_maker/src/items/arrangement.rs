@@ -78,7 +78,11 @@ fn planes(scene: &Scene, axis: usize) -> impl Iterator<Item = f32> {
 /// Numbers of places on each axis that [`free_place`] compares; in 2D without the third.
 const PLACES: [usize; 3] = [7, 5, 3];
 
-/// Returns the place in the view that is farthest from all items [m], for a new one.
+/// Distance from all items beyond which a place has enough room [m], in 2D and 3D. In 3D, places near the middle are seen best.
+const ENOUGH: [f32; 2] = [10.0, 0.35];
+
+/// Returns the place in the view that is farthest from all items [m], for a new one. Of places that are far enough, it is the
+/// one nearest to the middle.
 pub fn free_place(scene: &Scene) -> Vec3 {
     let boxes: Vec<[Vec3; 2]> = super::items(scene)
         .into_iter()
@@ -101,8 +105,8 @@ pub fn free_place(scene: &Scene) -> Vec3 {
         }));
         let away = |[low, high]: &[Vec3; 2]| (at - at.clamp(*low, *high)).length();
         let nearest = boxes.iter().map(away).fold(f32::INFINITY, f32::min);
-        // Of places that are as far, the one nearest to the middle.
-        let worth = nearest.min(10.0) - 0.01 * (at - middle).length();
+        let enough = ENOUGH[usize::from(axes == 3)];
+        let worth = nearest.min(enough) - 0.01 * (at - middle).length();
         if worth > best.0 {
             best = (worth, at);
         }

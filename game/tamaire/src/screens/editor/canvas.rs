@@ -177,7 +177,10 @@ fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
         ui.ctx().set_cursor_icon(CursorIcon::Grab);
     }
     if response.clicked() {
-        let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
+        let (adds, is_alone) = ui.input(|input| {
+            let modifiers = input.modifiers;
+            (modifiers.shift || modifiers.command, modifiers.alt)
+        });
         let before = game.maker.editor.is_adding;
         // With keys, a second press takes hold of a selected item.
         let is_by_pointer = response.clicked_by(PointerButton::Primary)
@@ -186,17 +189,17 @@ fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
             game.maker.editor.moves_by_keys ^= true;
         } else {
             game.maker.editor.is_adding |= adds;
-            game.select(item);
+            match is_alone {
+                true => game.select_alone(item),
+                false => game.select(item),
+            }
             game.maker.editor.is_adding = before;
             game.maker.editor.moves_by_keys = is_by_pointer;
         }
         response.request_focus();
     }
     if response.drag_started_by(PointerButton::Primary) {
-        if !is_selected {
-            game.maker.editor.selection = items::with_bars(game.maker.draft.scene(), item);
-            game.maker.editor.part = EditorPart::Selection;
-        }
+        game.select_to_drag(item);
         let from = ui.input(|input| input.pointer.press_origin());
         if let Some(from) = from {
             game.maker.editor.drag = Some(Drag::Move(under(game, view, from)));

@@ -52,10 +52,7 @@ pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
     let mut back = ui.input(|input| input.key_pressed(Key::Escape));
     let place = place(ui.max_rect());
     ui.painter().rect_filled(place, 0.0, PAGE);
-    let item = match game.maker.editor.selection[..] {
-        [item] => Some(item),
-        _ => None,
-    };
+    let item = game.main_item();
     let title = match item {
         Some(item) => game.item_name(item),
         None => words.level_settings.to_string(),
