@@ -1,9 +1,10 @@
 //! Large round buttons, and focus handling for keys and gamepads.
 
 use crate::Theme;
+use egui::text::LayoutJob;
 use egui::{
-    Color32, Context, FontId, Galley, Id, Painter, Rect, Response, Role, Sense, Stroke, StrokeKind,
-    Ui, Vec2, WidgetInfo, vec2,
+    Align, Color32, Context, FontId, Galley, Id, Painter, Rect, Response, Role, Sense, Stroke,
+    StrokeKind, Ui, Vec2, WidgetInfo, vec2,
 };
 use std::sync::Arc;
 
@@ -73,16 +74,51 @@ pub fn plain_button(
     );
     painter.rect_filled(rect, round, fill);
     focus_ring(ui, &response, rect, round, theme);
-    let galley = fitted(
-        ui.painter(),
-        text,
-        LETTERS * size.y,
-        rect.width() - 28.0,
-        ink,
-    );
-    let at = rect.center() - 0.5 * galley.size();
+    let room = rect.size() - vec2(28.0, 4.0);
+    let galley = wrapped(ui.painter(), text, LETTERS * size.y, room, ink);
+    let at = rect.center() - galley.rect.center().to_vec2();
     ui.painter().galley(at, galley, ink);
     response
+}
+
+/// Lays out text on one line, or centred on two lines if it would be much smaller on one. Shrinks it if it does not fit into
+/// `room`. Lines break at spaces only.
+pub fn wrapped(painter: &Painter, text: &str, size: f32, room: Vec2, ink: Color32) -> Arc<Galley> {
+    /// Least share of the size on one line.
+    const SHRUNK: f32 = 0.85;
+    let one = fitted(painter, text, size, room.x, ink);
+    let least = one
+        .job
+        .sections
+        .first()
+        .map_or(size, |part| part.format.font_id.size);
+    if least >= SHRUNK * size {
+        return one;
+    }
+    let two = text.match_indices(' ').map(|(at, _)| {
+        let mut job = LayoutJob::simple(text.to_string(), FontId::default(), ink, f32::INFINITY);
+        job.text.replace_range(at..=at, "\n");
+        job.halign = Align::Center;
+        job
+    });
+    let laid = |job: &LayoutJob, size: f32| {
+        let mut job = job.clone();
+        job.sections[0].format.font_id = FontId::proportional(size);
+        painter.layout_job(job)
+    };
+    let narrowest = two.min_by(|a, b| {
+        let [a, b] = [a, b].map(|job| laid(job, size).size().x);
+        a.total_cmp(&b)
+    });
+    let Some(job) = narrowest else {
+        return one;
+    };
+    let whole = laid(&job, size).size();
+    let share = (room / whole).min_elem().min(1.0);
+    match share * size > least {
+        true => laid(&job, share * size),
+        false => one,
+    }
 }
 
 /// Lays out text on one line, shrunk if it is wider than `width`.

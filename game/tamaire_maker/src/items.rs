@@ -22,6 +22,7 @@ pub use arrangement::{Guide, aligned, free_place, snapped};
 pub use bounds::{bounds, union};
 pub use clip::{Clip, copy, paste};
 pub use groups::group_of;
+use groups::is_pinned;
 pub use layers::{Stops, set_stops, stops_of};
 pub use movement::{rotate, stretch, translate};
 pub use removal::{Dropped, Removed, remove};
@@ -121,6 +122,7 @@ pub fn kind_of(scene: &Scene, item: Item) -> Option<Kind> {
             .map(|text| match text.motion_type {
                 // A box of an obstacle that was turned.
                 MotionTypeText::Fixed => Kind::Wall,
+                _ if is_pinned(scene, item) => Kind::SeeSaw,
                 _ => Kind::Plank,
             }),
         Item::Joint(index) => scene.joint.get(index).map(|joint| match joint.kind {

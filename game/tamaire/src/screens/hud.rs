@@ -73,8 +73,13 @@ pub(super) fn height(game: &Game, ui: &Ui) -> f32 {
 
 /// Scale of the overlay.
 pub(super) fn scale(game: &Game, ui: &Ui) -> f32 {
+    full_scale(game, ui).min(MOST)
+}
+
+/// Scale at which things have the same size on the screen in a small window as in a large one.
+pub(super) fn full_scale(game: &Game, ui: &Ui) -> f32 {
     let room = (ui.max_rect().width() / NARROWEST).max(1.0);
-    (game.settings.text_size / ui.ctx().zoom_factor()).clamp(1.0, MOST.min(room))
+    (game.settings.text_size / ui.ctx().zoom_factor()).clamp(1.0, room)
 }
 
 /// Flow layout of a row that wraps at the right edge.

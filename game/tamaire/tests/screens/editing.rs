@@ -411,6 +411,7 @@ fn secondary_button_moves_the_camera_and_no_thing() {
     frames(&mut window, 3);
     let before = scene(game(&mut window)).clone();
     let angles = game(&mut window).bout.camera.orbit_angles();
+    game(&mut window).select(Item::Hand(0));
     let at = place_of_item(&mut window, Item::Body(0));
     window.hover_at(at);
     frames(&mut window, 2);
@@ -426,9 +427,134 @@ fn secondary_button_moves_the_camera_and_no_thing() {
         false,
     ));
     frames(&mut window, 2);
-    let game = game(&mut window);
-    assert_ne!(game.bout.camera.orbit_angles(), angles);
-    assert!(scene(game) == &before && !game.maker.draft.can_undo());
+    let now = game(&mut window);
+    assert_ne!(now.bout.camera.orbit_angles(), angles);
+    assert!(scene(now) == &before && !now.maker.draft.can_undo());
+    assert_eq!(now.maker.editor.selection, [Item::Hand(0)]);
+    // A button turns the camera back.
+    click(&mut window, "Front view");
+    frames(&mut window, 200);
+    let [right, up] = game(&mut window).bout.camera.orbit_angles();
+    assert!(right.hypot(up) < 0.01, "{right} {up}");
+    assert!(window.query_by_label("Front view").is_none());
+}
+
+#[test]
+fn tabs_of_the_strip_lead_to_the_things_and_to_the_selection() {
+    let mut window = editor(Files::nowhere());
+    game(&mut window).edit_blank(2);
+    frames(&mut window, 2);
+    click(&mut window, "Basket");
+    // The things stay, so that another one can be added.
+    assert!(window.query_by_label("Details").is_none());
+    click(&mut window, "Selected: Basket 1");
+    click(&mut window, "Remove");
+    assert_eq!(game(&mut window).draft_problem(), None);
+    let baskets = |window: &mut Window| scene(game(window)).game.clone().unwrap().basket;
+    assert_eq!(baskets(&mut window), None);
+    click(&mut window, "Seesaw");
+    click(&mut window, "Selected: Seesaw 1");
+    click(&mut window, "Add a thing");
+    assert!(window.query_by_label("Details").is_none());
+    // The actions have the same places for a body and for a wall.
+    let mut places = [Item::Body(0), Item::Obstacle(0)].map(|item| {
+        game(&mut window).select(item);
+        frames(&mut window, 2);
+        let names = [
+            "Details",
+            "Copy",
+            "Remove",
+            "Turn left",
+            "Turn right",
+            "Done",
+        ];
+        names.map(|name| window.get_by_label(name).rect().min)
+    });
+    places[0].sort_by(|a, b| a.y.total_cmp(&b.y));
+    places[1].sort_by(|a, b| a.y.total_cmp(&b.y));
+    assert_eq!(places[0], places[1]);
+}
+
+#[test]
+fn basket_moves_with_its_bars_and_undo_restores_the_selection() {
+    let mut window = editor(Files::nowhere());
+    game(&mut window).edit_blank(2);
+    game(&mut window).add_thing(Kind::Basket);
+    game(&mut window).select_nothing();
+    frames(&mut window, 3);
+    let bars: Vec<Item> = { tamaire_maker::items::items(scene(game(&mut window))).into_iter() }
+        .filter(|&item| {
+            tamaire_maker::items::kind_of(scene(game(&mut window)), item) == Some(Kind::Bar)
+        })
+        .collect();
+    assert_eq!(bars.len(), 3);
+    let corner = |window: &mut Window, item| {
+        tamaire_maker::items::bounds(scene(game(window)), item).unwrap()[0]
+    };
+    let all: Vec<Item> = [Item::Basket(0)].into_iter().chain(bars.clone()).collect();
+    let before = all
+        .clone()
+        .into_iter()
+        .map(|item| corner(&mut window, item));
+    let before: Vec<Vec3> = before.collect();
+    let from = place_of_item(&mut window, bars[0]);
+    drag(&mut window, &[from, from - vec2(90.0, 0.0)]);
+    let moved: Vec<f32> = { all.iter().zip(&before) }
+        .map(|(&item, before)| before.x - corner(&mut window, item).x)
+        .collect();
+    assert!(moved[0] > 0.2, "{moved:?}");
+    assert!(
+        moved.iter().all(|by| (by - moved[0]).abs() < 1e-3),
+        "{moved:?}"
+    );
+    // Undo restores what was selected, and so does redo.
+    let selected = game(&mut window).maker.editor.selection.clone();
+    game(&mut window).select(Item::Hand(0));
+    game(&mut window).undo_edit(false);
+    assert_eq!(game(&mut window).maker.editor.selection, selected);
+    game(&mut window).undo_edit(true);
+    assert_eq!(game(&mut window).maker.editor.selection, [Item::Hand(0)]);
+    // A second press takes a bar alone.
+    for count in [4, 1] {
+        game(&mut window).select(bars[0]);
+        assert_eq!(game(&mut window).maker.editor.selection.len(), count);
+    }
+}
+
+#[test]
+fn keys_mark_take_and_move_things() {
+    let mut window = editor(Files::nowhere());
+    game(&mut window).edit_blank(2);
+    frames(&mut window, 3);
+    let before = scene(game(&mut window)).clone();
+    press(&mut window, Key::Tab);
+    let focused = window.ctx.memory(|memory| memory.focused());
+    assert!(focused.is_some(), "the first press marks something");
+    for _ in 0..20 {
+        press(&mut window, Key::Enter);
+        if game(&mut window).maker.editor.selection == [Item::Body(0)] {
+            break;
+        }
+        game(&mut window).select_nothing();
+        press(&mut window, Key::Tab);
+    }
+    assert_eq!(game(&mut window).maker.editor.selection, [Item::Body(0)]);
+    assert!(!game(&mut window).maker.editor.moves_by_keys);
+    let height = |window: &mut Window| scene(game(window)).body[0].at[1];
+    let floor = height(&mut window);
+    press(&mut window, Key::Enter);
+    press(&mut window, Key::ArrowUp);
+    let raised = height(&mut window);
+    assert!(raised > floor + 0.01, "{raised}");
+    press(&mut window, Key::Enter);
+    press(&mut window, Key::ArrowUp);
+    assert_eq!(height(&mut window), raised, "it was let go");
+    press(&mut window, Key::Escape);
+    assert_eq!(game(&mut window).maker.editor.selection, []);
+    assert_eq!(screen(&window), Screen::Editor);
+    press(&mut window, Key::Escape);
+    assert_ne!(screen(&window), Screen::Editor);
+    assert!(scene(game(&mut window)) != &before);
 }
 
 #[test]

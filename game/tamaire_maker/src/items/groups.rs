@@ -80,6 +80,11 @@ fn pins_of(scene: &Scene, item: Item) -> impl Iterator<Item = Item> {
     held.map(|(index, _)| Item::Joint(index))
 }
 
+/// Returns whether pins hold an item to a place.
+pub(super) fn is_pinned(scene: &Scene, item: Item) -> bool {
+    pins_of(scene, item).next().is_some()
+}
+
 /// Returns the small obstacles to which the pins of an item are fixed.
 fn supports_of(scene: &Scene, item: Item) -> Vec<Item> {
     let pins = scene.joint.iter();

@@ -1,16 +1,19 @@
 //! The room in the editor: items to select, drag, stretch and turn.
 
+use super::super::hud;
 use super::super::widgets::words;
 use crate::game::{Drag, EditorPart, GRID, Game, TURN};
 use app_shell::View;
-use app_shell::widgets::{fitted, is_on};
+use app_shell::widgets::{ButtonStyle, button, is_on};
+use egui::text::LayoutJob;
 use egui::{
-    Color32, CursorIcon, EventFilter, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense,
-    Shape, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align, Color32, CursorIcon, EventFilter, Id, Key, PointerButton, Pos2, Rect, Response, Role,
+    Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 use fuwafuwa::Vec3;
 use tamaire_maker::items::snapped;
 use tamaire_maker::items::{self, Item};
+use tamaire_sound::Menu;
 
 /// Least side of the place of an item that takes presses [points].
 const LEAST: f32 = 26.0;
@@ -22,6 +25,8 @@ const APART: f32 = 84.0;
 const ABOVE: f32 = 34.0;
 /// Turn of the camera by a drag [rad/point].
 const ORBIT: f32 = 0.006;
+/// Turn of the camera from which on a button turns it back [rad].
+const TURNED: f32 = 0.02;
 /// Distance within which things align with each other [points].
 const REACH: f32 = 7.0;
 
@@ -29,9 +34,6 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, room: Rect) {
     let Some(view) = game.bout.view else {
         return;
     };
-    if view.space.is_some() {
-        look_around(game, ui, room);
-    }
     floor(game, ui, room, &view);
     let scene = game.maker.draft.scene();
     let mut places: Vec<(Item, Rect)> = items::items(scene)
@@ -48,18 +50,22 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, room: Rect) {
     for (item, place) in places {
         one(game, ui, &view, item, place);
     }
+    if view.space.is_some() {
+        look_around(game, ui, room);
+    }
     handles(game, ui, &view);
     guides(game, ui, room, &view);
     frame(game, ui, &view);
     problem(game, ui, room);
+    hint(game, ui, room, view.space.is_some());
     // A dragged thing that has left the room has no widget that could end its drag.
     if !ui.input(|input| input.pointer.any_down()) {
         game.end_drag();
     }
 }
 
-/// Turns the camera in 3D with a drag of the secondary button or of two fingers over the room.
-fn look_around(game: &mut Game, ui: &Ui, room: Rect) {
+/// Turns the camera in 3D with a drag of the secondary button or of two fingers over the room. A button turns it back.
+fn look_around(game: &mut Game, ui: &mut Ui, room: Rect) {
     let (by, has_fingers) = ui.input(|input| {
         let pointer = &input.pointer;
         let is_over = pointer.latest_pos().is_some_and(|at| room.contains(at));
@@ -72,19 +78,53 @@ fn look_around(game: &mut Game, ui: &Ui, room: Rect) {
         game.drop_drag();
     }
     game.bout.camera.orbit(-ORBIT * by.x, ORBIT * by.y);
-    if game.maker.editor.selection.is_empty() {
-        let theme = game.theme();
-        let text = game.making().how_in_space;
-        let galley = fitted(ui.painter(), text, 17.0, room.width() - 40.0, theme.ink);
-        let at = pos2(
-            room.center().x - 0.5 * galley.size().x,
-            room.bottom() - 34.0,
-        );
-        let place = Rect::from_min_size(at, galley.size()).expand2(vec2(12.0, 5.0));
-        ui.painter()
-            .rect_filled(place, 12.0, theme.card.gamma_multiply(0.8));
-        ui.painter().galley(at, galley, theme.ink);
+    let [right, up] = game.bout.camera.orbit_angles();
+    if right.hypot(up) > TURNED {
+        let (theme, scale) = (game.theme(), hud::full_scale(game, ui));
+        let size = scale * vec2(108.0, 44.0);
+        let place = Rect::from_min_size(room.right_top() + vec2(-size.x - 8.0, 8.0), size);
+        let text = game.making().front_view;
+        let shown = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+            button(ui, &theme, text, size, ButtonStyle::Other).clicked()
+        });
+        if shown.inner {
+            game.blip(Menu::Confirm);
+            game.bout.camera.return_to_front();
+        }
     }
+}
+
+/// Tells at the lower edge of the room how things are moved by keys, or in 3D.
+fn hint(game: &Game, ui: &Ui, room: Rect, is_space: bool) {
+    let words = game.making();
+    let has_touch = ui.input(|input| input.any_touches() || input.has_touch_screen());
+    let by_keys = { ui.memory(|memory| memory.focused()) }
+        .and_then(|id| ui.ctx().read_response(id))
+        .is_some_and(|response| is_on(ui, &response));
+    let text = match (by_keys, game.maker.editor.selection.is_empty()) {
+        (true, false) if game.maker.editor.moves_by_keys => words.how_held,
+        (true, false) => words.how_selected,
+        (_, true) if is_space => words.how_in_space[usize::from(has_touch)],
+        _ => return,
+    };
+    let theme = game.theme();
+    let scale = hud::full_scale(game, ui);
+    let font = egui::FontId::proportional(15.0 * scale);
+    let mut job = LayoutJob::simple(text.to_string(), font, theme.ink, room.width() - 40.0);
+    job.halign = Align::Center;
+    let galley = ui.painter().layout_job(job);
+    let size = galley.size();
+    let place = Rect::from_center_size(
+        pos2(room.center().x, room.bottom() - 0.5 * size.y - 8.0),
+        size,
+    );
+    ui.painter().rect_filled(
+        place.expand2(vec2(12.0, 5.0)),
+        12.0,
+        theme.card.gamma_multiply(0.8),
+    );
+    let at = place.center() - galley.rect.center().to_vec2();
+    ui.painter().galley(at, galley, theme.ink);
 }
 
 /// Returns the box on the screen around a box in the world.
@@ -132,7 +172,8 @@ fn floor(game: &mut Game, ui: &mut Ui, room: Rect, view: &View) {
     let floor = ui.interact(
         room,
         Id::unique("floor of the editor"),
-        Sense::click_and_drag(),
+        // Keys go from thing to thing.
+        Sense::CLICK | Sense::DRAG,
     );
     if floor.clicked() {
         game.select_nothing();
@@ -153,11 +194,29 @@ fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
     let is_selected = game.maker.editor.is_selected(item);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, &name));
     let ink = game.theme().accent;
-    if is_selected {
+    let has_keys = is_on(ui, &response);
+    if has_keys {
+        let rim = Stroke::new(5.0, game.theme().ink);
+        ui.painter()
+            .rect_stroke(place.expand(4.0), 6.0, rim, StrokeKind::Outside);
+    }
+    if is_selected && has_keys && game.maker.editor.moves_by_keys {
+        // The keys hold it.
+        let line = Stroke::new(4.0, ink);
+        let corners = [
+            place.left_top(),
+            place.right_top(),
+            place.right_bottom(),
+            place.left_bottom(),
+            place.left_top(),
+        ];
+        ui.painter()
+            .extend(Shape::dashed_line(&corners, line, 10.0, 7.0));
+    } else if is_selected {
         let rim = Stroke::new(2.5, ink);
         ui.painter()
             .rect_stroke(place, 4.0, rim, StrokeKind::Outside);
-    } else if response.hovered() || is_on(ui, &response) {
+    } else if response.hovered() {
         let rim = Stroke::new(2.0, ink.gamma_multiply(0.5));
         ui.painter()
             .rect_stroke(place, 4.0, rim, StrokeKind::Outside);

@@ -25,7 +25,7 @@ const GAP: f32 = 8.0;
 
 /// Returns the part of the screen in which the room is shown.
 pub(super) fn room(game: &Game, ui: &Ui) -> Rect {
-    let (screen, scale) = (ui.max_rect(), hud::scale(game, ui));
+    let (screen, scale) = (ui.max_rect(), hud::full_scale(game, ui));
     screen
         .with_min_y(screen.top() + scale * TOP + 2.0 * EDGE)
         .with_max_y(screen.bottom() - shelf::height(screen, scale))
@@ -80,8 +80,8 @@ fn top(game: &mut Game, ui: &mut Ui, rect: Rect) -> bool {
         (-1.0, words.undo, draft.can_undo()),
         (1.0, words.redo, draft.can_redo()),
     ];
+    let side = high.min(0.5 * (right - left) - GAP);
     for (way, name, is_able) in steps {
-        let side = high.min(0.5 * (right - left) - GAP);
         let place = Rect::from_min_size(pos2(left, rect.top()), Vec2::splat(side));
         if step_button(ui, &theme, place, name, way, is_able) {
             game.blip(Menu::Confirm);

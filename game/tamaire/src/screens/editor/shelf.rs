@@ -5,7 +5,7 @@ use super::super::{hud, icons};
 use super::{EDGE, GAP, signs};
 use crate::game::{EditorPart, Game, Screen};
 use app_shell::Theme;
-use app_shell::widgets::{ButtonStyle, button, fitted, plain_button};
+use app_shell::widgets::{ButtonStyle, LETTERS, button, plain_button, wrapped};
 use egui::{
     Painter, Pos2, Rect, Response, Role, ScrollArea, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
@@ -13,10 +13,13 @@ use fuwafuwa::Vec3;
 use tamaire_maker::items::{Item, Kind};
 use tamaire_sound::Menu;
 
-/// Height of a button with text [points].
+/// Height of a button [points at scale 1].
 const HIGH: f32 = 44.0;
-/// Width of a button with text [points].
-const WIDE: f32 = 108.0;
+/// Width of a thing that can be added, and least width of another button [points at scale 1].
+const WIDE: [f32; 2] = [108.0, 80.0];
+/// Height of the scroll bar below the buttons [points].
+const BAR: f32 = 8.0;
+
 /// Actions on the selection.
 #[derive(Copy, Clone, PartialEq)]
 enum Deed {
@@ -33,31 +36,30 @@ enum Deed {
 }
 
 impl Deed {
-    fn all(game: &Game) -> Vec<Self> {
-        let mut all = vec![Self::Properties];
-        if let [Item::Body(_)] = game.maker.editor.selection[..] {
-            all.push(Self::Draw);
-        }
-        all.extend([
-            Self::Scale(1),
-            Self::Scale(-1),
-            Self::Turn(1.0),
-            Self::Turn(-1.0),
-        ]);
+    /// Returns all actions in pairs, which are shown side by side. Those that some selections lack come last, so that the
+    /// others have the same places for each selection.
+    fn pairs(game: &Game) -> Vec<[Option<Self>; 2]> {
+        let mut pairs = vec![
+            [Self::Properties, Self::Copy],
+            [Self::Remove, Self::Done],
+            [Self::Scale(1), Self::Scale(-1)],
+            [Self::Turn(1.0), Self::Turn(-1.0)],
+        ];
         if game.maker.draft.scene().dim == 3 {
-            all.extend([
-                Self::Lift(1.0),
-                Self::Lift(-1.0),
-                Self::Nudge(4),
-                Self::Nudge(5),
+            pairs.extend([
+                [Self::Lift(1.0), Self::Lift(-1.0)],
+                [Self::Nudge(4), Self::Nudge(5)],
+                [Self::Tip(1.0), Self::Tip(-1.0)],
             ]);
-            all.extend([Self::Tip(1.0), Self::Tip(-1.0)]);
         }
         if game.settings.scanning.is_on() {
-            all.extend((0..4).map(Self::Nudge));
+            pairs.extend([[0, 1], [2, 3]].map(|ways| ways.map(Self::Nudge)));
         }
-        all.extend([Self::Copy, Self::Remove, Self::Done]);
-        all
+        let mut pairs: Vec<_> = pairs.into_iter().map(|pair| pair.map(Some)).collect();
+        if let Some(Item::Body(_)) = game.main_item() {
+            pairs.push([Some(Self::Draw), None]);
+        }
+        pairs
     }
 
     fn name(self, game: &Game) -> &'static str {
@@ -107,27 +109,90 @@ impl Deed {
     }
 }
 
+/// Returns the number of rows of buttons below the switches.
+fn rows_in(screen: Rect) -> usize {
+    if is_narrow(screen) { 3 } else { 2 }
+}
+
+/// Whether the switches and the tabs need two rows.
+fn is_narrow(screen: Rect) -> bool {
+    screen.width() < screen.height()
+}
+
 /// Returns the height of the strip [points]. `scale` enlarges the buttons.
 pub(super) fn height(screen: Rect, scale: f32) -> f32 {
-    let rows = if screen.width() < screen.height() {
-        3.0
-    } else {
-        2.0
-    };
-    rows * (scale * HIGH + GAP) + scale * HIGH + 2.0 * EDGE
+    let heads = if is_narrow(screen) { 2.0 } else { 1.0 };
+    (heads + rows_in(screen) as f32) * (scale * HIGH + GAP) + BAR + EDGE
 }
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui, rect: Rect) {
     let theme = game.theme();
     ui.painter().rect_filled(rect, 0.0, theme.paper);
     let inside = rect.shrink2(vec2(EDGE, 0.5 * EDGE));
-    let high = hud::scale(game, ui) * HIGH;
+    let high = hud::full_scale(game, ui) * HIGH;
     let first = inside.with_max_y(inside.top() + high);
-    modes(game, ui, first);
-    let rest = inside.with_min_y(first.bottom() + GAP);
+    let head = match is_narrow(ui.max_rect()) {
+        true => {
+            modes(game, ui, first);
+            first.translate(vec2(0.0, high + GAP))
+        }
+        false => {
+            let [left, right] = halves(first);
+            modes(game, ui, right);
+            left
+        }
+    };
+    tabs(game, ui, head);
+    let rest = inside.with_min_y(head.bottom() + GAP);
     match game.maker.editor.part {
         EditorPart::Things => things(game, ui, rest),
         EditorPart::Selection => deeds(game, ui, rest),
+    }
+}
+
+/// Returns the left and the right half of a place, with a gap between them.
+fn halves(place: Rect) -> [Rect; 2] {
+    let middle = place.center().x;
+    [
+        place.with_max_x(middle - 0.5 * GAP),
+        place.with_min_x(middle + 0.5 * GAP),
+    ]
+}
+
+/// Shows the tabs of the strip: the things to add, and what can be done with the selection, if there is one.
+fn tabs(game: &mut Game, ui: &mut Ui, rect: Rect) {
+    let (theme, words) = (game.theme(), game.making());
+    let selected = match (game.main_item(), game.maker.editor.selection.len()) {
+        (_, 0) => None,
+        (Some(item), _) => Some(game.item_name(item)),
+        (None, count) => Some((words.selected)(count)),
+    };
+    let tabs = [
+        (EditorPart::Things, Some(words.things.to_string())),
+        (EditorPart::Selection, selected),
+    ];
+    let selection = words.selection;
+    for ((part, text), place) in tabs.into_iter().zip(halves(rect)) {
+        let Some(text) = text else {
+            continue;
+        };
+        let is_shown = game.maker.editor.part == part;
+        let builder = UiBuilder::new().max_rect(place);
+        let shown = ui.scope_builder(builder, |ui| {
+            let style = ButtonStyle::of(is_shown);
+            let response = plain_button(ui, &theme, &text, place.size(), style);
+            // The thing itself has the same name.
+            let name = match part {
+                EditorPart::Things => text,
+                EditorPart::Selection => format!("{selection}: {text}"),
+            };
+            response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_shown, &name));
+            response.clicked()
+        });
+        if shown.inner {
+            game.blip(Menu::Confirm);
+            game.maker.editor.part = part;
+        }
     }
 }
 
@@ -236,16 +301,28 @@ fn draw_switch(
     }
 }
 
-/// Shows the things that can be added.
+/// Shows the things that can be added, the most usual ones in the first columns.
 fn things(game: &mut Game, ui: &mut Ui, rect: Rect) {
     let names: Vec<(Kind, &str)> = { Kind::ALL.into_iter() }
         .map(|kind| (kind, (game.making().kind_name)(kind)))
         .collect();
-    let sign = |painter: &Painter, at: Pos2, scale: f32, kind: Kind| {
-        signs::draw(painter, &game.theme(), at, scale, kind);
-    };
-    let chosen = rows(game, ui, rect, "things", &names, Some(&sign));
-    if let Some(kind) = chosen {
+    let (theme, scale) = (game.theme(), hud::full_scale(game, ui));
+    let count = rows_in(ui.max_rect());
+    let columns: Vec<Vec<_>> = names.chunks(count).map(<[_]>::to_vec).collect();
+    let chosen = grid(
+        game,
+        ui,
+        (rect, WIDE[0]),
+        "things",
+        &columns,
+        |ui, (kind, text), size| {
+            signed(ui, &theme, (text, size), |painter, at| {
+                signs::draw(painter, &theme, at, scale, kind);
+            })
+            .clicked()
+        },
+    );
+    if let Some((kind, _)) = chosen {
         game.blip(Menu::Confirm);
         game.add_thing(kind);
     }
@@ -253,53 +330,58 @@ fn things(game: &mut Game, ui: &mut Ui, rect: Rect) {
 
 /// Shows what can be done with the selection.
 fn deeds(game: &mut Game, ui: &mut Ui, rect: Rect) {
-    let deeds = Deed::all(game);
-    let names: Vec<(Deed, &str)> = deeds
-        .into_iter()
-        .map(|deed| (deed, deed.name(game)))
+    let pairs = Deed::pairs(game);
+    let theme = game.theme();
+    let count = rows_in(ui.max_rect());
+    let columns: Vec<Vec<Deed>> = { pairs.chunks(count) }
+        .flat_map(|rows| [0, 1].map(|side| rows.iter().filter_map(|pair| pair[side]).collect()))
         .collect();
-    if let Some(deed) = rows(game, ui, rect, "deeds", &names, None) {
+    let chosen = grid(
+        game,
+        ui,
+        (rect, WIDE[1]),
+        "deeds",
+        &columns,
+        |ui, deed: Deed, size| {
+            button(ui, &theme, deed.name(game), size, ButtonStyle::Other).clicked()
+        },
+    );
+    if let Some(deed) = chosen {
         deed.perform(game);
     }
 }
 
-/// Function that draws the sign of an option at a position in a scale.
-type Sign<'a, T> = &'a dyn Fn(&Painter, Pos2, f32, T);
-
-/// Shows buttons in rows that scroll sideways. Returns the chosen one.
-fn rows<T: Copy>(
+/// Shows columns of buttons of at least the width `wide` [points at scale 1], which scroll sideways. `show` shows an option
+/// in a size and returns whether it is pressed. Returns the chosen option.
+fn grid<T: Copy>(
     game: &Game,
     ui: &mut Ui,
-    rect: Rect,
+    (rect, wide): (Rect, f32),
     id: &str,
-    options: &[(T, &str)],
-    sign: Option<Sign<T>>,
+    columns: &[Vec<T>],
+    mut show: impl FnMut(&mut Ui, T, Vec2) -> bool,
 ) -> Option<T> {
-    let theme = game.theme();
-    let scale = hud::scale(game, ui);
-    let size = scale * vec2(WIDE, HIGH - 4.0);
-    let count = (rect.height() / (size.y + 0.5 * GAP)).floor().max(1.0) as usize;
+    let scale = hud::full_scale(game, ui);
+    // The columns that are seen fill the width.
+    let seen = ((rect.width() + GAP) / (scale * wide + GAP))
+        .floor()
+        .max(1.0);
+    let wide = (rect.width() + GAP) / seen - GAP;
+    let size = vec2(wide.min(1.5 * scale * WIDE[0]), scale * HIGH);
     let mut chosen = None;
-    let builder = UiBuilder::new().max_rect(rect);
-    ui.scope_builder(builder, |ui| {
+    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         // The wheel scrolls sideways.
         ui.style_mut().always_scroll_the_only_direction = true;
-        let area = ScrollArea::horizontal().id_salt(id);
+        // Each level begins at the start.
+        let area = ScrollArea::horizontal().id_salt((id, game.maker.editor.opened));
         let area = area.scroll_source(egui::scroll_area::ScrollSource::ALL);
         area.show(ui, |ui| {
             ui.spacing_mut().item_spacing = Vec2::splat(GAP);
-            ui.vertical(|ui| {
-                // Column by column, so that the first options are seen without scrolling.
-                for row in 0..count.min(options.len()) {
-                    ui.horizontal(|ui| {
-                        for &(option, text) in options.iter().skip(row).step_by(count) {
-                            let response = match sign {
-                                None => button(ui, &theme, text, size, ButtonStyle::Other),
-                                Some(sign) => signed(ui, &theme, (text, size), |painter, at| {
-                                    sign(painter, at, scale, option);
-                                }),
-                            };
-                            if response.clicked() {
+            ui.horizontal_top(|ui| {
+                for column in columns {
+                    ui.vertical(|ui| {
+                        for &option in column {
+                            if show(ui, option, size) {
                                 chosen = Some(option);
                             }
                         }
@@ -323,9 +405,11 @@ fn signed(
     let (rect, side) = (response.rect, size.y);
     let painter = ui.painter();
     draw(painter, rect.left_center() + vec2(0.55 * side, 0.0));
-    let room = rect.width() - 1.25 * side;
-    let galley = fitted(painter, text, 0.42 * side, room, theme.ink);
-    let at = rect.left_center() + vec2(side, -0.5 * galley.size().y);
+    let place = rect
+        .with_min_x(rect.left() + side)
+        .shrink2(vec2(0.1 * side, 2.0));
+    let galley = wrapped(painter, text, LETTERS * side, place.size(), theme.ink);
+    let at = place.center() - galley.rect.center().to_vec2();
     painter.galley(at, galley, theme.ink);
     response
 }
