@@ -5,11 +5,13 @@
 //! and the ratio g of the term, the term adds the stress
 //!
 //! ```text
-//! P += R 2μ g dev(E − A)        dA/dt = (E − A) / τ
+//! P += R (S + W)        S = 2μ g dev(E − A)        dA/dt = (E − A) / τ
 //! ```
 //!
-//! dev takes away a third of the trace, so that only shear relaxes. The strain of the dashpot is integrated by the
-//! implicit Euler method.
+//! dev takes away a third of the trace, so that only shear relaxes. W is the antisymmetric matrix with which (S + W) U is
+//! symmetric, where U = I + E. It makes P the gradient of the stored energy μ g |dev(E − A)|². Without it, an element in which
+//! A and U have different axes would exert a torque on itself. The strain of the dashpot is integrated by the implicit Euler
+//! method.
 
 use crate::error::{Error, require};
 use crate::foundation::hash::hash_state;
@@ -122,6 +124,35 @@ pub(crate) fn viscous_stress(
             energy += 0.5 * stiffness * rest.length_squared();
         }
     }
+    let turning = turning_stress(&strain, &inner);
+    (0..3).for_each(|i| inner[i] += turning[i]);
     let stress = rotation.map(|row| inner[0] * row.x + inner[1] * row.y + inner[2] * row.z);
     (stress, energy)
+}
+
+/// Returns the antisymmetric matrix W with which (S + W)(I + E) is symmetric, for a strain E and a symmetric stress S. In the
+/// principal axes of E, with the stretches u, W₂₃ = S₂₃ (u₃ − u₂) / (u₂ + u₃): it is no larger than S unless the element is
+/// inverted. Then it is limited to the size of S.
+fn turning_stress(strain: &Matrix, stress: &Matrix) -> Matrix {
+    let stretch = [0, 1, 2].map(|i: usize| strain[i] + IDENTITY[i]);
+    let dot = |a: &Matrix, i: usize, b: &Matrix, j: usize| a[i].dot(b[j]);
+    // (U S − S U)ᵢⱼ = uᵢ · sⱼ − sᵢ · uⱼ, because both are symmetric. Its axial vector is (tr U − U) that of W.
+    let moment = |i: usize, j: usize| dot(&stretch, i, stress, j) - dot(stress, i, &stretch, j);
+    let moment = DVec3::new(moment(2, 1), moment(0, 2), moment(1, 0));
+    let trace = stretch[0].x + stretch[1].y + stretch[2].z;
+    let rows = [0, 1, 2].map(|i: usize| IDENTITY[i] * trace - stretch[i]);
+    let adjugate = [
+        rows[1].cross(rows[2]),
+        rows[2].cross(rows[0]),
+        rows[0].cross(rows[1]),
+    ];
+    let determinant = rows[0].dot(adjugate[0]);
+    let axis = DVec3::from(adjugate.map(|row| row.dot(moment))) / determinant.max(1e-9);
+    let most = (0.5 * stress.iter().map(|row| row.length_squared()).sum::<f64>()).sqrt();
+    let axis = axis.clamp_length_max(most);
+    [
+        DVec3::new(0.0, -axis.z, axis.y),
+        DVec3::new(axis.z, 0.0, -axis.x),
+        DVec3::new(-axis.y, axis.x, 0.0),
+    ]
 }

@@ -124,6 +124,71 @@ fn held_shear_relaxes_as_prony_series_says() {
     }
 }
 
+/// Strains a block along one axis until its dashpots follow, and then along another one. Checks the forces on the nodes
+/// against the stress of the reference implementation by the moments Σ f ⊗ x = −V J σ, and that they have no torque.
+fn check_turned_strain<D: Dim>(material: &Material) {
+    let grid = VoxelGrid::<D>::cube(4, 1.0).unwrap();
+    let mut body = SoftBody::new(grid, &[*material]).unwrap();
+    let stretched = |axis: Vec3| move |at: Vec3| at + 0.4 * axis * axis.dot(at);
+    let first = Vec3::new(0.8, 0.6, 0.0);
+    for _ in 0..60 {
+        place(&mut body, stretched(first));
+        body.advance(1e-4, D::Vector::ZERO);
+    }
+    let second = match D::N {
+        2 => Vec3::new(0.1, 1.0, 0.0),
+        _ => Vec3::new(0.1, 0.7, 0.7),
+    };
+    place(&mut body, stretched(second));
+    (0..8).for_each(|_| body.advance(0.0, D::Vector::ZERO));
+    let mut moments = [DVec3::ZERO; 3];
+    for (id, _) in body.mesh().nodes() {
+        let [force, at] = [body.force_on(id), body.node_state(id).0];
+        let [force, at] = [force, at].map(|vector| vector.to_vec3().as_dvec3());
+        (0..3).for_each(|i| moments[i] += force[i] * at);
+    }
+    let element = body.mesh().elements().next().unwrap().0;
+    let state = body.element_state(element).unwrap();
+    let [a, b, c] = state.deformation;
+    let ratio = a.dot(b.cross(c));
+    let size = moments.iter().map(|row| row.length()).fold(0.0, f64::max);
+    for i in 0..D::N {
+        for j in 0..D::N {
+            let error = moments[i][j] + ratio * state.stress[i][j];
+            assert!(error.abs() < 1e-3 * size, "{i} {j} {moments:?} {state:?}");
+            let torque = moments[i][j] - moments[j][i];
+            assert!(torque.abs() < 1e-3 * size, "{i} {j} {moments:?}");
+        }
+    }
+    // The dashpots have turned the axes of the stress away from those of the strain.
+    let along = |axis: Vec3| {
+        let axis = axis.normalize().as_dvec3();
+        DVec3::from(state.stress.map(|row| row.dot(axis)))
+            .cross(axis)
+            .length()
+    };
+    assert!(along(second) > 0.05 * size, "{state:?}");
+}
+
+#[test]
+fn viscous_stress_exerts_no_torque_and_matches_reference_law() {
+    for stress_law in [StressLaw::Corotational, StressLaw::NeoHookean] {
+        let viscous = Material {
+            prony: [PronyTerm::new(3.0, 0.005), PronyTerm::new(1.0, 0.05)],
+            ..rubber(stress_law, 0.3)
+        };
+        check_turned_strain::<Dim2>(&viscous);
+        check_turned_strain::<Dim3>(&viscous);
+    }
+    let plastic = Material {
+        prony: [PronyTerm::new(3.0, 0.005), PronyTerm::NONE],
+        yield_strain: 0.2,
+        ..rubber(StressLaw::Corotational, 0.3)
+    };
+    check_turned_strain::<Dim2>(&plastic);
+    check_turned_strain::<Dim3>(&plastic);
+}
+
 #[test]
 fn sheared_layer_creeps_as_prony_solid() {
     let term = PronyTerm::new(3.0, 0.5);
