@@ -17,8 +17,8 @@
 //! critical weight [Southwell 1932]. The strip is glued to walls at its ends, and the nodes at the walls are where the base
 //! state has them. The ripple has an envelope of half a cosine, which raises the critical weight by 0.2 %.
 //!
-//! The elements are uniform. A layer of graded elements ripples at 0.7 of the critical weight already: graded elements seem
-//! to be unstable under the hydrostatic tension of several µ at the dish.
+//! The elements are graded. Their hourglass stiffness grows with the tension, which is 6 µ at the dish; without this growth,
+//! the layer ripples at 0.7 of the critical weight. Uniform elements deviate by 0.3 %.
 
 use super::{Bound, Record, Role, Row, Setup};
 use crate::check::bar::{fix_where, still};
@@ -153,7 +153,7 @@ fn ripple(weight: f64, sign: f64) -> Result<(f64, u32)> {
     let width = along as f64 * voxel;
     let grid = VoxelGrid::<Dim2>::from_fn([along, N, 1], voxel as f32, |_| 1)?;
     let mut body =
-        SoftBody::with_options(grid, &[material], Law::CorotationalVem, Grading::Uniform)?;
+        SoftBody::with_options(grid, &[material], Law::CorotationalVem, Grading::Graded)?;
     let nodes: Vec<_> = body
         .mesh()
         .nodes()

@@ -69,12 +69,10 @@ enum Which {
     Greenhill,
     /// A ring is pinched between two points. Reference: the equation of the elastica.
     Ring,
-    /// A layer of gel hangs under a dish, and its surface becomes unstable at a critical weight. The elements are
-    /// uniform; graded ones are unstable under this tension. Reference: Mora et al. (2014), and the theory of small
-    /// ripples.
+    /// A layer of gel hangs under a dish, and its surface becomes unstable at a critical weight. Reference: Mora
+    /// et al. (2014), and the theory of small ripples.
     GelLayer,
-    /// A tube and a balloon of rubber, of uniform elements, are inflated. Reference: exact solutions of neo-Hookean bodies, Green and Zerna
-    /// (1954).
+    /// A tube and a balloon of rubber are inflated. Reference: exact solutions of neo-Hookean bodies, Green and Zerna (1954).
     Balloon,
     /// A force presses on a point of a half-space. Reference: Boussinesq (1885).
     HalfSpace,

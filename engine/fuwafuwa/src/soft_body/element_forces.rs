@@ -25,6 +25,7 @@ mod rotation_extraction;
 #[cfg(feature = "serde")]
 mod saved_states;
 mod stress_kernel;
+mod tension_kernel;
 mod viscous_kernel;
 
 pub use crate::math::row::Row;

@@ -22,7 +22,7 @@
 //! with 1 m of depth: the same formulas with F₃₃ = R₃₃ = 1.
 //!
 //! This P is that of [`StressLaw::Corotational`]. [`crate::soft_body::hyperelasticity`] has the P of the other stress
-//! laws.
+//! laws, and the growth of their hourglass stiffness k under tension.
 
 use crate::error::{Error, require};
 use crate::foundation::dim::Dim;
@@ -197,15 +197,58 @@ fn patch_exact<D: Dim>(
     size: f64,
     positions: &[DVec3],
 ) -> Vec<DVec3> {
-    let (deformation, _) = deformation_of(element_class, size, positions);
-    let stress = stress(elastic, &deformation);
-    forces_of_stress(elastic.elasticity, &stress, element_class, size, positions)
+    let (deformation, centre) = deformation_of(element_class, size, positions);
+    let elasticity = elastic.elasticity;
+    let mut stress = stress(elastic, &deformation);
+    let [growth, slope] = hourglass_growth(elastic, element_class, &deformation);
+    if slope != 0.0 {
+        let (stiffness, hourglass) = hourglass(
+            elasticity,
+            element_class,
+            size,
+            positions,
+            &deformation,
+            centre,
+        );
+        let energy = slope * hourglass_energy(element_class, stiffness, &hourglass);
+        let tension = energy / volume_of(element_class, 0.5 * size);
+        for (row, cofactor) in stress.iter_mut().zip(cofactor(&deformation)) {
+            *row += cofactor * tension;
+        }
+    }
+    forces_of_stress(elasticity, &stress, growth, element_class, size, positions)
 }
 
-/// Returns the nodal forces [N] of a stress [Pa], plus the forces that resist the hourglass modes.
+/// Returns the factor of the hourglass stiffness of an element under tension, and its derivative by det F.
+pub(crate) fn hourglass_growth<D: Dim>(
+    elastic: ElasticLaw,
+    element_class: &ElementClass<D>,
+    deformation: &Matrix,
+) -> [f64; 2] {
+    match elastic.stress_law {
+        StressLaw::Corotational => [1.0, 0.0],
+        _ if element_class.is_plain() => [1.0, 0.0],
+        _ => hyperelasticity::hourglass_growth::<D>(elastic.elasticity, deformation),
+    }
+}
+
+/// Returns the energy [J] of the hourglass modes, from the values that [`hourglass`] returns.
+pub(crate) fn hourglass_energy<D: Dim>(
+    element_class: &ElementClass<D>,
+    stiffness: f64,
+    hourglass: &[DVec3],
+) -> f64 {
+    let weights = element_class.volumes.iter().zip(hourglass);
+    let swings = weights.map(|(&weight, &h)| h.dot(h) / weight);
+    0.5 * stiffness * swings.sum::<f64>()
+}
+
+/// Returns the nodal forces [N] of a stress [Pa], plus the forces that resist the hourglass modes. `growth` is the factor
+/// of the hourglass stiffness.
 pub(crate) fn forces_of_stress<D: Dim>(
     elasticity: Elasticity,
     stress: &Matrix,
+    growth: f64,
     element_class: &ElementClass<D>,
     size: f64,
     positions: &[DVec3],
@@ -229,7 +272,7 @@ pub(crate) fn forces_of_stress<D: Dim>(
         .map(|k| {
             let b = gradient(k);
             let correction = hourglass[k] + apply(&skew, b) * (-1.0 / volume);
-            -apply(stress, b) - correction * stiffness
+            -apply(stress, b) - correction * (growth * stiffness)
         })
         .collect()
 }

@@ -6,7 +6,7 @@ use crate::material::Material;
 use crate::soft_body::SoftBody;
 use crate::soft_body::element_law::{
     ElasticLaw, IDENTITY, Law, MIN_VOLUME_RATIO, Matrix, cofactor, deformation_of, hourglass,
-    rotation_of, shape_matching_offsets, volume_of,
+    hourglass_energy, hourglass_growth, rotation_of, shape_matching_offsets, volume_of,
 };
 use crate::soft_body::hyperelasticity;
 use crate::soft_body::plasticity::{elastic_part, plastic_stiffness_factor, stress_after};
@@ -114,10 +114,10 @@ pub fn element_state_plastic<D: Dim>(
     let half = 0.5 * size;
     let (stiffness, hourglass) =
         hourglass(elasticity, element_class, size, positions, &whole, centre);
-    let weights = element_class.volumes.iter().zip(&hourglass);
-    let swings = weights.map(|(&weight, &h)| h.dot(h) / weight);
+    let [growth, _] = hourglass_growth(elastic, element_class, &whole);
     let density = plastic_stiffness_factor::<D>(plastic_inverse) * density;
-    let energy = density * volume_of(element_class, half) + 0.5 * stiffness * swings.sum::<f64>();
+    let energy = density * volume_of(element_class, half)
+        + growth * hourglass_energy(element_class, stiffness, &hourglass);
     ElementState {
         deformation: whole,
         strain,
@@ -274,8 +274,8 @@ mod tests {
     use crate::topology::grid::VoxelGrid;
     use glam::{Vec2, Vec3};
 
-    /// Returns a ball, shrunk by the fraction `amount`, with nodes displaced by a bending field in proportion
-    /// to `amount`.
+    /// Returns a ball, shrunk by the fraction `amount`, or grown if `amount` is negative, with nodes displaced by a
+    /// bending field in proportion to `amount`.
     fn crooked<D: Dim>(amount: f32) -> SoftBody<D> {
         let grid = VoxelGrid::<D>::ball(12, 1.0).unwrap();
         let mut body = SoftBody::new(grid, &[Material::default()]).unwrap();
@@ -290,8 +290,8 @@ mod tests {
         body
     }
 
-    fn check_slope<D: Dim>(law: Law, stress_law: StressLaw) {
-        let body = crooked::<D>(0.1);
+    fn check_slope<D: Dim>(law: Law, stress_law: StressLaw, amount: f32) {
+        let body = crooked::<D>(amount);
         let elasticity = Material::default().elasticity;
         let elastic = ElasticLaw {
             elasticity,
@@ -342,8 +342,10 @@ mod tests {
             (Law::CorotationalVem, StressLaw::NeoHookean),
             (Law::CorotationalVem, yeoh),
         ] {
-            check_slope::<Dim2>(law, stress_law);
-            check_slope::<Dim3>(law, stress_law);
+            for amount in [0.1, -0.1] {
+                check_slope::<Dim2>(law, stress_law, amount);
+                check_slope::<Dim3>(law, stress_law, amount);
+            }
         }
     }
 

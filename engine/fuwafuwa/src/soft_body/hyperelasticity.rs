@@ -14,8 +14,20 @@
 //! at J = 0 [Smith 2018]. If b is negative, g grows up to x_max = −a / 3b and stays constant beyond; otherwise x_max is
 //! infinite. P is therefore finite for every F, and restores inverted elements. Small strains follow
 //! Hooke's law with μ and λ.
+//!
+//! F is the mean over an element. If an element has mid nodes or lacks children, det F is not the ratio of its
+//! volumes once its nodes leave the affine motion. Under the tension t = (λ + μ) (J − 1), the difference would release
+//! energy, and graded elements would fold at a t of about 3μ. Their hourglass stiffness k therefore grows with t:
+//!
+//! ```text
+//! E = V W + s k/2 Σ w |h|²      s = √(1 + (c max(t, 0) / Y)²)      P_total = P + s'(J) (k/2V) Σ w |h|² cof F
+//! ```
+//!
+//! The last term keeps the forces the gradient of the energy E. In plain elements, s = 1: in 2D, their det F is the
+//! ratio of areas.
 
 use crate::error::{Error, require};
+use crate::foundation::dim::Dim;
 use crate::foundation::hash::hash_state;
 use crate::soft_body::element_law::{Elasticity, Matrix, cofactor};
 
@@ -25,8 +37,9 @@ use crate::soft_body::element_law::{Elasticity, Matrix, cofactor};
 /// An element of a hyperelastic material becomes stiffer where it is stretched. The world takes shorter substeps
 /// while a body is stiffer than at rest, see [`SoftBody::longest_substep`](crate::SoftBody::longest_substep).
 ///
-/// Graded elements of a hyperelastic material become unstable under a tension in all directions of several times the shear
-/// modulus. Use [`Grading::Uniform`](crate::Grading) there.
+/// Graded elements of a hyperelastic material become stiffer against bending under a tension in all directions. They withstand
+/// about 6 times the shear modulus; rubber tears inside at less. With [`Grading::Uniform`](crate::Grading), the error of
+/// such bodies is smaller.
 ///
 /// Ignored under [`Law::Endo2004`](crate::Law::Endo2004).
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -157,6 +170,27 @@ pub(crate) fn energy(elasticity: Elasticity, factors: Factors, deformation: &Mat
     let swelling = all.volume - 1.0;
     0.5 * shear * (x + y * y * (factors.a + factors.b * y) + beyond)
         + 0.5 * (elasticity.lame() + shear) * swelling * swelling
+}
+
+/// Returns the derivative of c t / Y by J, for the growth s of the hourglass stiffness.
+///
+/// With this constant c, graded bodies with holes in random places withstand a tension of 6μ in all directions. With a c
+/// of 12.6 in 3D or 6.4 in 2D, usual element classes would withstand any tension, but stretched elements would be stiffer
+/// against bending.
+pub(crate) fn tension_rate<D: Dim>(elasticity: Elasticity) -> f64 {
+    let c = match D::N {
+        2 => 3.5,
+        _ => 5.0,
+    };
+    c * (elasticity.lame() + elasticity.shear_modulus()) / elasticity.young
+}
+
+/// Returns the growth s of the hourglass stiffness of a graded element, and its derivative by J.
+pub(crate) fn hourglass_growth<D: Dim>(elasticity: Elasticity, deformation: &Matrix) -> [f64; 2] {
+    let rate = tension_rate::<D>(elasticity);
+    let tension = rate * (Invariants::of(deformation).volume - 1.0).max(0.0);
+    let growth = (1.0 + tension * tension).sqrt();
+    [growth, rate * tension / growth]
 }
 
 /// Returns an upper estimate of the stiffness of a deformed element against a pressure wave, λ + 2μ at rest,

@@ -106,7 +106,7 @@ pub fn forces_after<D: Dim>(
     );
     let (deformation, _) = deformation_of(element_class, size, positions);
     let stress = stress_after::<D>(elasticity.into(), &deformation, plastic_inverse);
-    forces_of_stress(elasticity, &stress, element_class, size, positions)
+    forces_of_stress(elasticity, &stress, 1.0, element_class, size, positions)
 }
 
 /// Returns the plastic inverse after plastic flow. It differs from the `plastic_inverse` before the flow

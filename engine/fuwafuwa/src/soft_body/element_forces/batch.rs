@@ -209,15 +209,17 @@ pub fn evaluate_share<D: Dim, S: Simd>(
                 continue;
             }
             let (key, class_data) = (batch.key, batch.class_data(&shared));
-            let moduli = &shared.materials[key.material as usize - 1].moduli;
+            let material = &shared.materials[key.material as usize - 1];
+            let moduli = &material.moduli;
+            let constants = (moduli, material.hyperelastic.as_ref());
             let view = &mut batch.view::<D>(&shared, all, first);
             match (key.kind, class_data) {
                 (BatchKind::Plain, _) => plain_forces::<D, S>(simd, moduli, view, scratch),
                 (_, (one, [])) => {
-                    forces::<D, S>(simd, law, moduli, &Uniform(one), view, scratch);
+                    forces::<D, S>(simd, law, constants, &Uniform(one), view, scratch);
                 }
                 (_, (_, each)) => {
-                    forces::<D, S>(simd, law, moduli, &PerLane(each), view, scratch);
+                    forces::<D, S>(simd, law, constants, &PerLane(each), view, scratch);
                 }
             }
         }

@@ -19,7 +19,9 @@
 //! entries of b and r are ±1, so the sums need only additions and subtractions. Four of five elements are
 //! plain.
 
+use super::material_constants::HyperelasticConstants;
 use super::rotation_extraction::{Matrix, turn};
+use super::tension_kernel::tension_terms;
 use crate::foundation::dim::Dim;
 use crate::math::lanes::{Eight, LANES, Lanes, at_least, gather, load, positive, scatter, splat};
 use crate::math::row::Row;
@@ -101,10 +103,12 @@ pub const fn class_data_len<D: Dim>(nodes: usize) -> usize {
 #[derive(Copy, Clone, Debug)]
 pub struct Scratch {
     /// Positions of the nodes [m] relative to the first node of the element.
-    x: [[Eight; 3]; 27],
+    pub x: [[Eight; 3]; 27],
     pub f: [[Eight; 3]; 3],
-    moment: [[Eight; 3]; 3],
-    centre: [Eight; 3],
+    pub moment: [[Eight; 3]; 3],
+    pub centre: [Eight; 3],
+    /// max(J − 1, 0), if the material is hyperelastic.
+    pub swelling: Eight,
     /// First Piola–Kirchhoff stress [Pa]; under [`Law::Endo2004`], which has no stress, the rotation matrix
     /// of the element.
     pub stress: [[Eight; 3]; 3],
@@ -116,6 +120,7 @@ impl Scratch {
         f: [[[0.0; LANES]; 3]; 3],
         moment: [[[0.0; LANES]; 3]; 3],
         centre: [[0.0; LANES]; 3],
+        swelling: [0.0; LANES],
         stress: [[[0.0; LANES]; 3]; 3],
     };
 }
@@ -290,12 +295,13 @@ pub fn plain_forces<D: Dim, S: Simd>(
     }
 }
 
-/// Third loop, for any element class: computes the nodal forces.
+/// Third loop, for any element class: computes the nodal forces. `hyperelastic` are the constants of a hyperelastic
+/// material.
 #[inline(always)]
 pub fn forces<D: Dim, S: Simd>(
     simd: S,
     law: Law,
-    moduli: &Moduli,
+    (moduli, hyperelastic): (&Moduli, Option<&HyperelasticConstants>),
     class_data: &impl ClassData,
     view: &mut BatchView,
     scratch: &Scratch,
@@ -309,7 +315,14 @@ pub fn forces<D: Dim, S: Simd>(
     let own_stiffness = class_data.get(simd, class_data_len::<D>(count) - 1);
     if law == Law::CorotationalVem {
         let (plain_spring, area) = scales::<D, S>(simd, moduli, half);
-        let spring = plain_spring * own_stiffness;
+        let mut spring = plain_spring * own_stiffness;
+        let tension = hyperelastic.map(|constants| {
+            let sizes = (count, half, spring);
+            tension_terms::<D, S>(simd, constants.tension_rate, class_data, sizes, scratch)
+        });
+        if let Some((growth, _)) = tension {
+            spring *= growth;
+        }
         let inverse_volume = class_data.get(simd, class_data_len::<D>(count) - 2);
         let (bend, skew) = (spring * half, spring * inverse_volume);
         stiffness = spring;
@@ -324,6 +337,9 @@ pub fn forces<D: Dim, S: Simd>(
                 let stress = load(simd, &scratch.stress[i][j]);
                 pull[i][j] = skew * (moment - half * bent) - area * stress;
                 shear[i][j] = bend * load(simd, &scratch.f[i][j]);
+                if let Some((_, tension)) = tension {
+                    pull[i][j] -= tension[i][j];
+                }
             }
         }
     } else {

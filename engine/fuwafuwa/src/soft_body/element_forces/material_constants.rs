@@ -5,6 +5,7 @@ use super::plastic_kernel::PlasticFlowLimits;
 use crate::foundation::dim::Dim;
 use crate::material::Material;
 use crate::soft_body::element_law::{Elasticity, Law};
+use crate::soft_body::hyperelasticity::tension_rate;
 use crate::soft_body::viscosity::PronyTerm;
 
 /// Constants of a material. Under [`Law::Endo2004`], only the moduli are used.
@@ -30,6 +31,8 @@ pub struct HyperelasticConstants {
     pub stiffening: [f32; 2],
     /// x_max
     pub max: f32,
+    /// c (λ + μ) / Y, for the growth of the hourglass stiffness.
+    pub tension_rate: f32,
 }
 
 impl MaterialConstants {
@@ -60,6 +63,7 @@ impl MaterialConstants {
             bulk: (elasticity.lame() + shear) as f32,
             stiffening: [(2.0 * factors.a) as f32, (3.0 * factors.b) as f32],
             max: factors.max.min(f64::from(f32::MAX)) as f32,
+            tension_rate: tension_rate::<D>(elasticity) as f32,
         });
         Self {
             moduli,

@@ -86,6 +86,7 @@ fn hyperelastic_lanes<D: Dim, S: Simd>(
         swelling += f[0][j] * cofactor[0][j];
     }
     *view.inverted = positive(zero - one - swelling);
+    at_least(swelling, zero).store_array(&mut scratch.swelling);
     let max = splat(simd, constants.max);
     let stretched = at_least(squares - (swelling + swelling), zero);
     let stretched = if_positive(max - stretched, stretched, max);
