@@ -271,11 +271,13 @@ impl Material {
         self.fracture_energy() * self.rate_toughening.factor(speed)
     }
 
-    /// Speed of a pressure wave [m/s]: √((λ + 2µ) / ρ), with Lamé's parameters λ and µ of fast motion and the
-    /// density ρ.
+    /// Speed of a fast pressure wave [m/s]: √((λ + 2µ + 4/3 µ Σg) / ρ), with Lamé's parameters λ and µ at rest, the ratios g of
+    /// the [Prony series](Self::prony), of which only shear takes part, and the density ρ.
     pub fn wave_speed(&self) -> f64 {
-        let shear = self.elasticity.shear_modulus() * self.relaxation(0.0);
-        ((self.elasticity.lame() + 2.0 * shear) / f64::from(self.density)).sqrt()
+        let shear = self.elasticity.shear_modulus();
+        let relaxing = shear * (self.relaxation(0.0) - 1.0);
+        let stiffness = self.elasticity.lame() + 2.0 * shear + 4.0 / 3.0 * relaxing;
+        (stiffness / f64::from(self.density)).sqrt()
     }
 
     /// Returns Ω s [m/s]: the angular frequency Ω of the breathing mode of a single free voxel, times the
@@ -284,7 +286,8 @@ impl Material {
     /// In the breathing mode, the distance of every node from the centre of the voxel grows by the factor 1 +
     /// ε. In N dimensions, the elastic energy per volume is ½ N² (λ + 2µ/N) ε², with Lamé's parameters λ and
     /// µ. The kinetic energy per volume is ½ ρ N s²/4 ε'², because the mass, of density ρ, sits in the
-    /// corners. Therefore Ω² = 4 N (λ + 2µ/N) / ρs².
+    /// corners. Therefore Ω² = 4 N (λ + 2µ/N) / ρs². Here µ is that of fast motion, which is an upper bound: the mode has
+    /// little shear in 2D and none in 3D.
     pub(crate) fn breathing_speed(&self, dimensions: usize) -> f64 {
         let axes = dimensions as f64;
         let shear = self.elasticity.shear_modulus() * self.relaxation(0.0);
