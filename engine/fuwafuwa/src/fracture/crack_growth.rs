@@ -148,6 +148,7 @@ pub fn failures<D: Dim>(body: &mut SoftBody<D>, duration: f32) -> Vec<Failure> {
             // A fast test excludes most nodes: those far from failure.
             let least = least_tension(body, node);
             let failure = match node.is_inside {
+                true if body.law() == Law::Endo2004 => None,
                 true => inside_failure(body, &mut near, id, node),
                 false if is_surely_below(simd, body, id, node, least) => None,
                 false => failure(body, &mut near, id, node, least),
@@ -413,7 +414,8 @@ fn tip_failure<D: Dim>(
     let rate = release.length();
     // The stiffness scale lowers the stiffness, so that the same stress releases more energy.
     let resistance = material.fracture_energy() / body.stiffness_scale() as f32;
-    let mut excess = (rate / resistance).sqrt() / TIP_FACTOR[D::N - 2];
+    let tip_factor = TIP_FACTOR[D::N - 2];
+    let mut excess = (rate / resistance).sqrt() / tip_factor;
     if !excess.is_finite() {
         return None;
     }
@@ -444,7 +446,9 @@ fn tip_failure<D: Dim>(
         axis: cut.axis.into(),
         excess,
         energy: rate * area,
-        speed: material.rate_toughening.speed_at(rate / resistance),
+        speed: material
+            .rate_toughening
+            .speed_at(rate / (tip_factor * tip_factor * resistance)),
         advance: Some(Advance {
             to,
             direction,
