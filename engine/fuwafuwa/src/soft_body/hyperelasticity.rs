@@ -5,8 +5,8 @@
 //!
 //! ```text
 //! x = |F|² − 3 − 2 (J − 1)      y = min(max(x, 0), x_max)      g = 1 + 2 a y + 3 b y²
-//! W = μ/2 (x + a y² + b y³ + (g − 1) (x − y)) + (λ + μ)/2 (J − 1)²      (without the term in x − y if x < 0)
-//! P = μ g (F − cof F) + (λ + μ) (J − 1) cof F
+//! W = μ/2 (x + a y² + b y³ + (g − 1) (x − y)) + (λ + μ)/2 (J − 1)² + μ k I₀/6 q³      q = max(1 − |F|² / I₀, 0)
+//! P = μ g (F − cof F) + (λ + μ) (J − 1) cof F − μ k q² F
 //! ```
 //!
 //! At constant volume, x = |F|² − 3, and W is the law of [Yeoh 1993] with C₁ = μ/2, C₂ = a C₁ and C₃ = b C₁, or
@@ -14,6 +14,10 @@
 //! at J = 0 [Smith 2018]. If b is negative, g grows up to x_max = −a / 3b and stays constant beyond; otherwise x_max is
 //! infinite. P is therefore finite for every F, and restores inverted elements. Small strains follow
 //! Hooke's law with μ and λ.
+//!
+//! The terms in q, with I₀ = 1.27 and k = 1.05, act where the mean stretch in 3D is below √(I₀/3) = 0.65. Without them, F = 0
+//! would be a local minimum of the energy: an element of a low Poisson's ratio that is crushed to half of its width would
+//! collapse to a point and stay there.
 //!
 //! F is the mean over an element. If an element has mid nodes or lacks children, det F is not the ratio of its
 //! volumes once its nodes leave the affine motion. Under the tension t = (λ + μ) (J − 1), the difference would release
@@ -80,7 +84,8 @@ impl StressLaw {
         Some(Factors { a, b, max })
     }
 
-    /// Checks that stress grows with stretch.
+    /// Checks that the factor g of the stress is positive. The stress may still fall over a range of stretches, if
+    /// `second` is negative.
     ///
     /// # Errors
     /// [`Error::InvalidParameter`] names the constant that is out of range.
@@ -100,6 +105,10 @@ impl StressLaw {
         require(is_valid, "stress_law.second", expected, second)
     }
 }
+
+/// I₀, the square of the deformation gradient below which an element resists further compression, and the factor k of this
+/// resistance. With a factor above 1, even an element that is a point is pushed apart.
+pub(crate) const CRUSHED: [f64; 2] = [1.27, 1.05];
 
 /// Factors of a hyperelastic law.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -148,6 +157,11 @@ impl Invariants {
     fn distortion(&self) -> f64 {
         self.squares[0] - 3.0 - 2.0 * (self.volume - 1.0)
     }
+
+    /// q
+    fn crushed(&self) -> f64 {
+        (1.0 - self.squares[0] / CRUSHED[0]).max(0.0)
+    }
 }
 
 /// Returns the first Piola–Kirchhoff stress [Pa] of a hyperelastic law.
@@ -156,8 +170,10 @@ pub(crate) fn stress(elasticity: Elasticity, factors: Factors, deformation: &Mat
     let all = Invariants::of(deformation);
     let distortion = shear * factors.growth(all.stretched(factors));
     let pressure = (elasticity.lame() + shear) * (all.volume - 1.0);
+    let crushed = shear * CRUSHED[1] * all.crushed().powi(2);
     [0, 1, 2].map(|i: usize| {
-        (deformation[i] - all.cofactor[i]) * distortion + all.cofactor[i] * pressure
+        let grown = (deformation[i] - all.cofactor[i]) * distortion;
+        grown + all.cofactor[i] * pressure - deformation[i] * crushed
     })
 }
 
@@ -168,7 +184,8 @@ pub(crate) fn energy(elasticity: Elasticity, factors: Factors, deformation: &Mat
     let (x, y) = (all.distortion(), all.stretched(factors));
     let beyond = (factors.growth(y) - 1.0) * (x - y).max(0.0);
     let swelling = all.volume - 1.0;
-    0.5 * shear * (x + y * y * (factors.a + factors.b * y) + beyond)
+    let crushed = CRUSHED[0] * CRUSHED[1] / 3.0 * all.crushed().powi(3);
+    0.5 * shear * (x + y * y * (factors.a + factors.b * y) + beyond + crushed)
         + 0.5 * (elasticity.lame() + shear) * swelling * swelling
 }
 
@@ -197,7 +214,8 @@ pub(crate) fn hourglass_growth<D: Dim>(elasticity: Elasticity, deformation: &Mat
 /// divided by λ + 2μ; at least 1.
 ///
 /// A wave with the normal n at rest and the direction of motion m has the stiffness
-/// μ g + 2 μ g' (m · (F − cof F) n)² + (λ + μ) (m · cof F n)². The estimate takes the largest value of each term.
+/// μ g + 2 μ g' (m · (F − cof F) n)² + (λ + μ) (m · cof F n)² + 4 μ k q (m · F n)² / I₀, and the second derivative of J adds at
+/// most (λ + μ) |J − 1|. The estimate takes the largest value of each term.
 pub(crate) fn relative_stiffness(
     elasticity: Elasticity,
     factors: Factors,
@@ -214,7 +232,8 @@ pub(crate) fn relative_stiffness(
     };
     let [lengths, areas] = all.squares;
     let apart = (lengths + areas - 6.0 * all.volume).max(0.0);
-    let distortion = factors.growth(y) + 2.0 * slope.max(0.0) * apart;
+    let crushed = 4.0 * CRUSHED[1] * all.crushed() / CRUSHED[0] * lengths;
+    let distortion = factors.growth(y) + 2.0 * slope.max(0.0) * apart + crushed;
     // Largest eigenvalue of a symmetric matrix, here of the square of cof F, from its trace and its norm.
     let spread = (areas * areas - 3.0 * lengths * all.volume * all.volume).max(0.0);
     let largest = (areas + 2.0 * spread.sqrt()) / 3.0;
