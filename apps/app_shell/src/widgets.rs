@@ -121,6 +121,11 @@ pub fn wrapped(painter: &Painter, text: &str, size: f32, room: Vec2, ink: Color3
     }
 }
 
+/// Returns the least font size that is legible on a phone [points]: 12 points without the zoom.
+pub fn least_letters(ctx: &Context) -> f32 {
+    12.0 / ctx.zoom_factor().min(1.0)
+}
+
 /// Lays out text on one line, shrunk if it is wider than `width`.
 pub fn fitted(painter: &Painter, text: &str, size: f32, width: f32, ink: Color32) -> Arc<Galley> {
     let lay = |size| painter.layout_no_wrap(text.to_string(), FontId::proportional(size), ink);
