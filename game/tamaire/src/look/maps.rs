@@ -2,6 +2,7 @@
 
 use super::feelings::Feeling;
 use super::rest_frame::{camera, face_at_rest, frame};
+use super::ropes::{JointFigure, figures};
 use super::{Face, view_of_level};
 use app_shell::{CameraRig, Theme, View};
 use eframe::egui_wgpu::RenderState;
@@ -31,6 +32,7 @@ struct Picture {
     texture: TextureId,
     /// Drawn faces of the bodies in a 2D level. In 3D they are part of the texture.
     faces: Vec<Face>,
+    joints: Vec<JointFigure>,
 }
 
 impl Maps {
@@ -43,6 +45,9 @@ impl Maps {
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         painter.image(picture.texture, rect, whole, Color32::WHITE);
         let view = view(rect, level);
+        for joint in &picture.joints {
+            joint.draw(painter, &view);
+        }
         for face in &picture.faces {
             face.paint(painter, &view);
         }
@@ -91,7 +96,7 @@ impl Maps {
         let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(SIZE[0] as f32, SIZE[1] as f32));
         let view = view(rect, level);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let faces = match AnyRound::new(level.clone()) {
+        let (faces, joints) = match AnyRound::new(level.clone()) {
             AnyRound::Plane(round) => {
                 let renderer = self
                     .renderer
@@ -99,7 +104,7 @@ impl Maps {
                 let frame = frame(camera(&view), &round, theme);
                 renderer.prepare(device, queue, &mut encoder, round.world(), &frame, SIZE);
                 renderer.paint(&mut pass_into(&mut encoder, &target));
-                faces(&round, None)
+                (faces(&round, None), figures(round.world()).collect())
             }
             AnyRound::Space(round) => {
                 let new = || space::Renderer::new(device, FORMAT);
@@ -115,7 +120,7 @@ impl Maps {
                 };
                 renderer.prepare(device, queue, &mut encoder, round.world(), &frame, SIZE);
                 renderer.paint(&mut pass_into(&mut encoder, &target));
-                Vec::new()
+                (Vec::new(), figures(round.world()).collect())
             }
         };
         queue.submit([encoder.finish()]);
@@ -124,6 +129,7 @@ impl Maps {
             level: level.clone(),
             texture: textures.register_native_texture(device, &target, FilterMode::Linear),
             faces,
+            joints,
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Ropes, springs and pins between bodies.
 
 use super::DrawOptions;
+use app_shell::View;
 use egui::{Color32, Painter, Pos2, Shape, Stroke};
 use fuwafuwa::inspect::obstacles;
-use fuwafuwa::{Dim, DimVector, JointKind, Layers, World};
+use fuwafuwa::{Dim, DimVector, JointKind, Layers, Vec3, World};
 
 /// Colours of the rim and of the inside of a rope.
 const ROPE: [Color32; 2] = [
@@ -17,38 +18,67 @@ const SEGMENTS: usize = 16;
 /// Number of turns of a spring.
 const TURNS: usize = 9;
 
-/// Draws the joints of a world. A slack rope hangs down.
+/// Shape of a joint on the screen.
+enum Figure {
+    /// Points along a rope [m].
+    Rope(Vec<Vec3>),
+    Spring,
+    Pin,
+}
+
+/// A joint to draw.
+pub(super) struct JointFigure {
+    /// Positions of the anchors [m].
+    ends: [Vec3; 2],
+    figure: Figure,
+}
+
+/// Draws the joints of a world.
 pub(super) fn draw<D: Dim>(painter: &Painter, world: &World<D>, look: &DrawOptions) {
-    for (handle, joint) in world.joints() {
-        let Ok(Some(anchors)) = world.joint_anchor_positions(handle) else {
-            continue;
-        };
-        let places = anchors.map(DimVector::to_vec3);
-        let scale = look.view.scale_at(0.5 * (places[0] + places[1]));
-        let ends = places.map(|at| look.view.to_screen(at));
-        let distance = (places[1] - places[0]).length();
-        let width = scale * WIDTH;
-        let line = match joint.definition().kind {
+    for joint in figures(world) {
+        joint.draw(painter, &look.view);
+    }
+}
+
+/// Returns the joints of a world. A slack rope hangs down.
+pub(super) fn figures<D: Dim>(world: &World<D>) -> impl Iterator<Item = JointFigure> {
+    world.joints().filter_map(|(handle, joint)| {
+        let anchors = world.joint_anchor_positions(handle).ok()??;
+        let ends = anchors.map(DimVector::to_vec3);
+        let figure = match joint.definition().kind {
             JointKind::Rope { length } => {
                 // A parabola with this sag is about as long as the rope.
-                let slack = (length * length - distance * distance).max(0.0);
+                let slack = (length * length - (ends[1] - ends[0]).length_squared()).max(0.0);
                 let points = hanging(anchors, (0.375 * slack).sqrt());
                 let points = points.enumerate().map(|(step, at)| {
                     // A taut rope passes through obstacles, and its ends may lie in them.
                     let hangs = slack > 0.0 && (1..SEGMENTS).contains(&step);
-                    let at = if hangs {
-                        outside_obstacles(world, at)
-                    } else {
-                        at
-                    };
-                    look.view.to_screen(at.to_vec3())
+                    match hangs {
+                        true => outside_obstacles(world, at).to_vec3(),
+                        false => at.to_vec3(),
+                    }
                 });
-                points.collect()
+                Figure::Rope(points.collect())
             }
-            JointKind::Spring { .. } => zigzag(ends, 2.0 * width),
-            _ => {
+            JointKind::Spring { .. } => Figure::Spring,
+            _ => Figure::Pin,
+        };
+        Some(JointFigure { ends, figure })
+    })
+}
+
+impl JointFigure {
+    /// Draws the joint.
+    pub(super) fn draw(&self, painter: &Painter, view: &View) {
+        let [from, to] = self.ends;
+        let width = view.scale_at(0.5 * (from + to)) * WIDTH;
+        let ends = self.ends.map(|at| view.to_screen(at));
+        let line = match &self.figure {
+            Figure::Rope(points) => points.iter().map(|&at| view.to_screen(at)).collect(),
+            Figure::Spring => zigzag(ends, 2.0 * width),
+            Figure::Pin => {
                 painter.circle(ends[0], width, ROPE[1], Stroke::new(0.4 * width, ROPE[0]));
-                continue;
+                return;
             }
         };
         painter.add(Shape::line(line.clone(), Stroke::new(width, ROPE[0])));
