@@ -5,10 +5,12 @@
 use fuwafuwa::DEFAULT_TICK;
 use std::sync::Arc;
 use tamaire_play::bot::StraightPush;
-use tamaire_play::{AnyRound, Bot, BotKind, Level, Route};
+use tamaire_play::{AnyRound, Bot, BotKind, InputFrame, Level, Route};
 
 /// Maximum length of a round of a bot [s].
 pub const SECONDS: f32 = 45.0;
+/// Maximum length of the round in which no hand moves [s].
+const IDLE: f32 = 15.0;
 /// Seeds with which each bot plays.
 const SEEDS: [u64; 2] = [1, 2];
 /// Speed at which the bot pushes that only pushes straight [m/s].
@@ -23,6 +25,8 @@ const IN_TIME: f64 = 0.99;
 enum Player {
     Bot(BotKind),
     Straight,
+    /// Moves no hand.
+    Idle,
 }
 
 /// Result of a check.
@@ -48,6 +52,8 @@ pub struct Findings {
     pub shaved: Finding,
     /// Whether a bot that only pushes straight wins. If so, the level may be too easy.
     pub straight: Finding,
+    /// Whether the level is won although no hand moves.
+    pub by_itself: Finding,
     /// Whether a machine half as fast as this one computes the level in real time.
     pub real_time: Finding,
 }
@@ -60,13 +66,16 @@ pub struct Check {
     all: usize,
     running: Option<(AnyRound, Running)>,
     findings: Findings,
-    /// Times of the ticks [s].
+    /// Number of ticks of all rounds.
+    ticks: usize,
+    /// Times of the ticks in which hands move [s].
     times: Vec<f32>,
 }
 
 enum Running {
     Bot(Box<Bot>),
     Straight(StraightPush),
+    Idle,
 }
 
 impl Check {
@@ -83,10 +92,12 @@ impl Check {
                 }
                 left.push((squeeze, seed));
             }
+            left.push((Player::Idle, SEEDS[0]));
         } else {
             left.push((Player::Bot(BotKind::Random), SEEDS[0]));
             findings.squeezed = Finding::NotAsked;
             findings.straight = Finding::NotAsked;
+            findings.by_itself = Finding::NotAsked;
         }
         if !left.iter().any(|(player, _)| *player == shave) {
             findings.shaved = Finding::NotAsked;
@@ -97,6 +108,7 @@ impl Check {
             left,
             running: None,
             findings,
+            ticks: 0,
             times: Vec::new(),
         }
     }
@@ -128,6 +140,11 @@ impl Check {
         ((self.all - waiting) as f32 + share) / self.all as f32
     }
 
+    /// Returns the time that the rounds have taken so far [s].
+    pub fn played_seconds(&self) -> f32 {
+        self.ticks as f32 * DEFAULT_TICK
+    }
+
     /// Continues the checks for about `budget` [s]. `now` returns the time since a fixed moment [s].
     pub fn go_on(&mut self, budget: f64, now: impl Fn() -> f64) {
         let began = now();
@@ -141,7 +158,9 @@ impl Check {
             self.begin_next();
             return;
         };
+        let is_idle = matches!(running, Running::Idle);
         let frame = match running {
+            Running::Idle => InputFrame::default(),
             Running::Bot(bot) => round.ask(bot),
             Running::Straight(bot) => match round {
                 AnyRound::Plane(round) => bot.frame(round),
@@ -150,8 +169,13 @@ impl Check {
         };
         let began = now();
         round.step(frame);
-        self.times.push((now() - began) as f32);
-        let is_over = round.ticks() as f32 * DEFAULT_TICK >= SECONDS;
+        let seconds = (now() - began) as f32;
+        self.ticks += 1;
+        if !is_idle {
+            self.times.push(seconds);
+        }
+        let most = if is_idle { IDLE } else { SECONDS };
+        let is_over = round.ticks() as f32 * DEFAULT_TICK >= most;
         let outcome = round.progress().outcome;
         if outcome.is_none() && !is_over {
             return;
@@ -159,6 +183,7 @@ impl Check {
         if let Some(outcome) = outcome {
             let found = match (&*running, outcome.route) {
                 (Running::Straight(_), _) => &mut self.findings.straight,
+                (Running::Idle, _) => &mut self.findings.by_itself,
                 (_, Route::Squeeze) => &mut self.findings.squeezed,
                 (_, Route::Shave | Route::Mix) => &mut self.findings.shaved,
             };
@@ -181,6 +206,7 @@ impl Check {
             Player::Bot(BotKind::Shave) => self.findings.shaved != Finding::Open,
             Player::Bot(_) => false,
             Player::Straight => self.findings.straight != Finding::Open,
+            Player::Idle => self.findings.by_itself != Finding::Open,
         };
         match self.left.pop() {
             Some((player, _)) if is_known(player) => {}
@@ -188,6 +214,7 @@ impl Check {
                 let running = match player {
                     Player::Bot(kind) => Running::Bot(Box::new(Bot::new(kind, seed))),
                     Player::Straight => Running::Straight(StraightPush::new(false, STRAIGHT, seed)),
+                    Player::Idle => Running::Idle,
                 };
                 self.running = Some((AnyRound::new(self.level.clone()), running));
             }
@@ -204,9 +231,10 @@ impl Check {
             squeezed,
             shaved,
             straight,
+            by_itself,
             real_time,
         } = &mut self.findings;
-        for open in [squeezed, shaved, straight] {
+        for open in [squeezed, shaved, straight, by_itself] {
             if *open == Finding::Open {
                 *open = Finding::NotFound;
             }
@@ -261,6 +289,25 @@ mod tests {
             assert!(seconds > 0.5 && seconds <= SECONDS);
         }
         assert_eq!(real_time, Finding::Yes(None));
+        assert_eq!(check.findings().by_itself, Finding::NotFound);
+        assert!(check.played_seconds() > IDLE);
+    }
+
+    #[test]
+    fn level_with_its_body_in_the_basket_wins_by_itself() {
+        let mut scene = Level::open("classic").unwrap().scene().clone();
+        let game = scene.game.as_mut().unwrap();
+        game.basket.as_mut().unwrap().half = [3.0; 3];
+        let mut check = Check::new(Arc::new(Level::from_scene("won", scene).unwrap()));
+        assert_eq!(check.played_seconds(), 0.0);
+        while check.findings().by_itself == Finding::Open {
+            check.go_on(1.0, || 0.0);
+        }
+        let Finding::Yes(Some(seconds)) = check.findings().by_itself else {
+            panic!("{:?}", check.findings());
+        };
+        assert_eq!(seconds, 0.0, "no hand moved");
+        assert!((0.1..IDLE).contains(&check.played_seconds()));
     }
 
     #[test]
@@ -268,7 +315,12 @@ mod tests {
         let check = checked("sandbox", 0.012);
         let findings = check.findings();
         assert_eq!(findings.real_time, Finding::NotFound);
-        for finding in [findings.squeezed, findings.shaved, findings.straight] {
+        for finding in [
+            findings.squeezed,
+            findings.shaved,
+            findings.straight,
+            findings.by_itself,
+        ] {
             assert_eq!(finding, Finding::NotAsked);
         }
         assert_eq!(check.progress(), 1.0);

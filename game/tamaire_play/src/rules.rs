@@ -139,6 +139,11 @@ impl Outcome {
         self.ticks as f32 * DEFAULT_TICK
     }
 
+    /// Returns whether the round was won before any hand moved.
+    pub fn is_by_itself(&self) -> bool {
+        self.ticks == 0
+    }
+
     /// Returns the numbers of the level's wishes that the outcome meets, counted from 1.
     pub fn wishes(&self, rules: &GameText) -> Vec<usize> {
         let wishes = rules.wish.iter().zip(1..);
