@@ -137,7 +137,8 @@ impl Game {
             StorageEvent::Damaged(damage) => self.tell_of(damage),
             StorageEvent::Saved(location) => {
                 self.shelf.refresh(&self.files);
-                let text = format!("{} {}", self.words().saved, location.display());
+                let (file, folder) = file_and_folder(&location);
+                let text = (self.words().saved)(&file, folder.as_deref());
                 // The system's file manager cannot be operated with a single switch.
                 match self.files.has_folders() && !self.settings.scanning.is_on() {
                     true => self.notices.tell_of_saved(&text, location),
@@ -163,5 +164,54 @@ impl Game {
         };
         let refused = format!("{}{more}", refused.join(", "));
         self.notify((self.words().damaged)(&refused, damage.aside.as_deref()));
+    }
+}
+
+/// Returns the name of a saved file and its folder, if it has one, as texts for the player. The middle of a long folder is
+/// left out.
+fn file_and_folder(location: &Location) -> (String, Option<String>) {
+    /// Maximum number of characters at each end of a folder.
+    const ENDS: usize = 22;
+    let text = |part: &std::ffi::OsStr| part.to_string_lossy().into_owned();
+    let file = location.file_name().unwrap_or(location.as_os_str());
+    let folder = location
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.map(|folder| {
+        let whole = text(folder.as_os_str());
+        let letters: Vec<char> = whole.chars().collect();
+        match letters.len() > 2 * ENDS {
+            true => {
+                let (first, last) = (&letters[..ENDS], &letters[letters.len() - ENDS..]);
+                first.iter().chain(&['…']).chain(last).collect()
+            }
+            false => whole,
+        }
+    });
+    (text(file), folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn saved_file_is_named_with_its_folder_shortened_in_the_middle() {
+        for (path, file, folder) in [
+            ("classic-1", "classic-1", None),
+            (
+                "/home/mika/levels/cat.toml",
+                "cat.toml",
+                Some("/home/mika/levels"),
+            ),
+            (
+                "/home/mika/.local/share/applications/tamaire/games/levels/cat.toml",
+                "cat.toml",
+                Some("/home/mika/.local/shar…s/tamaire/games/levels"),
+            ),
+        ] {
+            let expected = (file.to_string(), folder.map(String::from));
+            assert_eq!(file_and_folder(&Location::from(path)), expected);
+        }
     }
 }

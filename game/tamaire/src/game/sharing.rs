@@ -346,9 +346,12 @@ impl Game {
 
     /// Keeps the level, and gives it to the player as a file or tells where its file is.
     pub fn save_draft_file(&mut self) {
-        if self.keep_draft() {
-            let (id, text) = (self.maker.draft.id().to_string(), self.maker.draft.text());
-            self.files.save_level(&id, text);
+        match self.store_draft() {
+            Ok(()) => {
+                let (id, text) = (self.maker.draft.id().to_string(), self.maker.draft.text());
+                self.files.save_level(&id, text);
+            }
+            Err(problem) => self.notify(problem),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::widgets::words;
 use app_shell::Theme;
+use app_shell::widgets::least_letters;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 use std::f32::consts::TAU;
 use tamaire_play::Route;
@@ -33,9 +34,10 @@ pub(super) fn tick(painter: &Painter, middle: Pos2, size: f32, stroke: Stroke) {
 
 /// Draws the 3D badge; `corner` is its upper left corner.
 pub(super) fn space(ui: &Ui, corner: Pos2, theme: &Theme) {
-    let ground = Rect::from_min_size(corner, vec2(38.0, 24.0));
-    ui.painter().rect_filled(ground, 12.0, theme.ink);
-    words(ui, ground.center(), "3D", 16.0, theme.card);
+    let letters = least_letters(ui.ctx()).max(16.0);
+    let ground = Rect::from_min_size(corner, letters * vec2(2.4, 1.5));
+    ui.painter().rect_filled(ground, 0.75 * letters, theme.ink);
+    words(ui, ground.center(), "3D", letters, theme.card);
 }
 
 /// Draws the icon of a route: a body pressed into a square, a body with bits torn off, or both. It is pale

@@ -1,15 +1,18 @@
 //! Screen for choosing a level.
 
 use super::buttons::pale;
+use super::editor::focus_name;
 use super::icons;
-use super::widgets::{dim_background, header_to_open, page, page_rect, words};
+use super::widgets::{dim_background, finger, header_to_open, page, page_rect, words};
 use crate::game::Game;
 use crate::journey::{Journey, Lock, Section, Stars, stars_of};
 use crate::look::{Maps, Stage};
 use crate::records::Record;
 use crate::words::{Language, Words};
 use app_shell::Theme;
-use app_shell::widgets::{ButtonStyle, button, fitted, focus_ring, highlight, is_on, plain_button};
+use app_shell::widgets::{
+    ButtonStyle, LETTERS, button, fitted, focus_ring, highlight, is_on, least_letters, plain_button,
+};
 use egui::{
     Color32, FontId, Painter, Rect, Response, RichText, Role, Sense, Stroke, Tooltip, Ui, Vec2,
     WidgetInfo, pos2, vec2,
@@ -25,14 +28,13 @@ const GAP: f32 = 20.0;
 const WIDE: f32 = 236.0;
 /// Height of a tile below its thumbnail [points].
 pub(super) const BELOW: f32 = 92.0;
-/// Height of the button below a level that the player added [points].
-const SLIM: f32 = 36.0;
 
 /// Action that the player has chosen for a level.
 enum LevelAction {
     Play(usize),
     TakeOut(usize),
     Change(usize),
+    Rename(usize),
     Copy(usize),
     New(u8),
     BringBack,
@@ -127,6 +129,10 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         LevelAction::Play(index) => game.start(index),
         LevelAction::TakeOut(index) => game.take_out(index),
         LevelAction::Change(index) => game.edit(index),
+        LevelAction::Rename(index) => {
+            game.rename(index);
+            focus_name(ui);
+        }
         LevelAction::Copy(index) => game.duplicate(index),
         LevelAction::New(dim) => game.edit_blank(dim),
         LevelAction::BringBack => game.bring_back(),
@@ -176,16 +182,24 @@ fn heading(ui: &mut Ui, game: &Game, section: Section, journey: &Journey, lock: 
         (None, Some(stars)) => (said.stars)(stars.earned, stars.all),
         (None, None) => String::new(),
     };
-    let wide = ui.available_width();
-    let (rect, response) = ui.allocate_exact_size(vec2(wide, 34.0), Sense::hover());
     let label = format!("{title}  {note}");
+    let (wide, painter) = (ui.available_width(), ui.painter());
+    let letters = least_letters(ui.ctx()).max(19.0);
+    let name = fitted(painter, &title, 26.0, wide - 8.0, theme.ink);
+    let note = fitted(painter, &note, letters, wide - 8.0, theme.ink);
+    // A note without room beside the title is below it.
+    let is_below = name.size().x + note.size().x + 26.0 > wide;
+    let below = if is_below { note.size().y } else { 0.0 };
+    let size = vec2(wide, 34.0 + below);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, label.trim()));
-    let painter = ui.painter();
-    let name = fitted(painter, &title, 26.0, 0.55 * wide, theme.ink);
-    let note = fitted(painter, &note, 19.0, 0.42 * wide, theme.ink);
-    let middle = rect.center().y;
+    let middle = rect.top() + 17.0;
     let at = pos2(rect.left() + 4.0, middle - 0.5 * name.size().y);
-    let after = pos2(at.x + name.size().x + 18.0, middle - 0.5 * note.size().y);
+    let after = match is_below {
+        true => pos2(at.x, rect.top() + 34.0),
+        false => pos2(at.x + name.size().x + 18.0, middle - 0.5 * note.size().y),
+    };
+    let painter = ui.painter();
     painter.galley(at, name, theme.ink);
     painter.galley(after, note, theme.ink);
 }
@@ -232,48 +246,68 @@ fn make(ui: &mut Ui, game: &Game) -> Option<LevelAction> {
         (words.bring_back)(name)
     });
     ui.horizontal_wrapped(|ui| {
-        let mut press = |text: &str, wide: f32, action: LevelAction| {
-            if button(ui, &theme, text, vec2(wide, 44.0), ButtonStyle::Other).clicked() {
+        let high = finger(ui);
+        let most = ui.available_width();
+        let mut press = |text: &str, action: LevelAction| {
+            let font = FontId::proportional(LETTERS * high);
+            let galley = { ui.painter() }.layout_no_wrap(text.to_string(), font, theme.ink);
+            let size = vec2((galley.size().x + 44.0).min(most), high);
+            if button(ui, &theme, text, size, ButtonStyle::Other).clicked() {
                 wanted = Some(action);
             }
         };
-        press(words.new_level, 190.0, LevelAction::New(2));
-        press(words.new_level_3d, 190.0, LevelAction::New(3));
+        press(words.new_level, LevelAction::New(2));
+        press(words.new_level_3d, LevelAction::New(3));
         if game.has_own_levels() {
-            press(words.save_pack, 230.0, LevelAction::SavePack);
+            press(words.save_pack, LevelAction::SavePack);
         }
         if game.has_unsaved_level() {
             let text = (words.go_on_with)(game.draft_name());
-            press(&text, 300.0, LevelAction::GoOn);
+            press(&text, LevelAction::GoOn);
         }
         if let Some(text) = &bring_back {
-            press(text, 300.0, LevelAction::BringBack);
+            press(text, LevelAction::BringBack);
         }
     });
     wanted
 }
 
-/// Shows the buttons below a level that the player made or added.
+/// Shows the buttons below a level that the player made or added, in two rows. The one that removes the level is apart.
 fn own_buttons(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Option<LevelAction> {
     let name = game.settings.language.of(&game.levels[index].game().name);
     let (theme, words) = (game.theme(), game.making());
     let mut wanted = None;
-    let size = vec2((wide - 16.0) / 3.0, SLIM);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 8.0;
-        for (text, action) in [
-            (words.change, LevelAction::Change(index)),
-            (words.duplicate, LevelAction::Copy(index)),
-            (words.remove, LevelAction::TakeOut(index)),
-        ] {
-            let response = plain_button(ui, &theme, text, size, ButtonStyle::Other);
-            let told = format!("{text}: {name}");
-            response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &told));
-            if response.clicked() {
-                wanted = Some(action);
+    let rows = [
+        (
+            8.0,
+            [
+                (words.change, LevelAction::Change(index)),
+                (words.rename, LevelAction::Rename(index)),
+            ],
+        ),
+        (
+            30.0,
+            [
+                (words.duplicate, LevelAction::Copy(index)),
+                (words.remove, LevelAction::TakeOut(index)),
+            ],
+        ),
+    ];
+    ui.spacing_mut().item_spacing.y = 10.0;
+    for (gap, row) in rows {
+        let size = vec2(0.5 * (wide - gap), finger(ui));
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = gap;
+            for (text, action) in row {
+                let response = plain_button(ui, &theme, text, size, ButtonStyle::Other);
+                let told = format!("{text}: {name}");
+                response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &told));
+                if response.clicked() {
+                    wanted = Some(action);
+                }
             }
-        }
-    });
+        });
+    }
     wanted
 }
 
@@ -360,7 +394,7 @@ fn draw_best_time(painter: &Painter, theme: &Theme, said: &Words, map: Rect, rec
     } else {
         theme.faint
     };
-    let font = FontId::proportional(16.0);
+    let font = FontId::proportional(least_letters(painter.ctx()).max(16.0));
     let galley = painter.layout_no_wrap(time, font, ink);
     let size = galley.size() + vec2(16.0, 6.0);
     let place = Rect::from_min_size(map.right_bottom() - size - vec2(6.0, 6.0), size);
@@ -409,12 +443,12 @@ pub(super) fn legend(ui: &mut Ui, game: &Game) {
     const SIGN: f32 = 46.0;
     const BETWEEN: f32 = 20.0;
     let (theme, said) = (game.theme(), game.words());
-    let [won, wish, squeezed, shaved, space] = said.legend;
+    let [won, wish, squeezed, shaved] = said.legend;
     let route = |route| {
         move |ui: &Ui, theme: &Theme, at| icons::route(ui.painter(), theme, at, 10.0, route, true)
     };
     let [squeeze, shave] = [Route::Squeeze, Route::Shave].map(route);
-    let signs: [(&str, &Sign); 5] = [
+    let signs: [(&str, &Sign); 4] = [
         (won, &|ui, theme, at| {
             ui.painter().circle_filled(at, 12.0, theme.good);
             icons::tick(ui.painter(), at, 6.0, Stroke::new(3.0, theme.card));
@@ -424,11 +458,9 @@ pub(super) fn legend(ui: &mut Ui, game: &Game) {
         }),
         (squeezed, &squeeze),
         (shaved, &shave),
-        (space, &|ui, theme, at| {
-            icons::space(ui, at - vec2(19.0, 12.0), theme)
-        }),
     ];
-    let texts = signs.map(|(name, _)| fitted(ui.painter(), name, 17.0, 300.0, theme.faint));
+    let letters = least_letters(ui.ctx()).max(17.0);
+    let texts = signs.map(|(name, _)| fitted(ui.painter(), name, letters, 300.0, theme.faint));
     let widths = texts.each_ref().map(|text| SIGN + text.size().x + BETWEEN);
     let (mut first, all) = (0, ui.available_width());
     while first < signs.len() {

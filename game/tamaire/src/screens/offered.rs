@@ -45,10 +45,10 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 line(ui, &text, 17.0, theme.faint);
             }
             if let Some(replay) = &replay {
-                let seconds = replay.seconds();
+                let seconds = (said.seconds)(replay.seconds());
                 let how = match replay.outcome {
-                    Some(outcome) => format!("{} {seconds:.1} s", (said.route)(outcome.route)),
-                    None => format!("{seconds:.1} s"),
+                    Some(outcome) => format!("{} {seconds}", (said.route)(outcome.route)),
+                    None => seconds,
                 };
                 if let Some(outcome) = replay.outcome {
                     let at = Rect::from_min_size(rect.left_top(), vec2(44.0, 44.0)).center();

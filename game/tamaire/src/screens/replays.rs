@@ -164,7 +164,7 @@ fn tell(
                 true => String::new(),
                 false => format!(", {}", said.assisted),
             };
-            let seconds = format!("{:.1} s{help}", found.seconds);
+            let seconds = format!("{}{help}", (said.seconds)(found.seconds));
             match found.outcome {
                 Some(outcome) => (
                     Some(outcome.route),

@@ -31,8 +31,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let wanted = column_beside(ui, WIDE, (across, false), |ui| {
         card(ui, &theme, |ui| {
             ui.spacing_mut().item_spacing = Vec2::ZERO;
-            headline(ui, &theme, said, outcome.route);
-            if is_best {
+            headline(ui, &theme, said, &outcome);
+            if is_best && !outcome.is_by_itself() {
                 let best = format!("★ {}", said.new_best);
                 line(ui, &best, 21.0, theme.good);
             }
@@ -43,6 +43,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
             numbers(ui, &theme, said, &outcome);
             ui.add_space(8.0);
             match help_of(&level, said) {
+                // Stars of a level that wins by itself say nothing about a route.
+                None if outcome.is_by_itself() => {}
                 None => wishes(ui, &theme, said, &outcome, &level.game().wish),
                 Some(help) => {
                     line(ui, &help, 20.0, theme.faint);
@@ -50,8 +52,8 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
                 }
             }
             ui.add_space(8.0);
-            if level.routes().contains(&other(outcome.route)) {
-                line(ui, (said.other_way)(outcome.route), 23.0, theme.accent);
+            if let Some(route) = beaten_route(&level, &outcome) {
+                line(ui, (said.other_way)(route), 23.0, theme.accent);
                 ui.add_space(GAP);
             }
             let wishes = &level.game().wish;
@@ -90,6 +92,12 @@ fn help_of(level: &Level, said: &Words) -> Option<String> {
     (!names.is_empty()).then(|| format!("{}: {}", said.assisted, names.join(", ")))
 }
 
+/// Returns the route of a win after which the other one is suggested. `None` if the level has only one, or wins by itself.
+pub(super) fn beaten_route(level: &Level, outcome: &Outcome) -> Option<Route> {
+    let has_other = level.routes().contains(&other(outcome.route));
+    (has_other && !outcome.is_by_itself()).then_some(outcome.route)
+}
+
 /// Returns the route that is suggested after a win by `route`.
 pub(super) fn other(route: Route) -> Route {
     match route {
@@ -98,9 +106,13 @@ pub(super) fn other(route: Route) -> Route {
     }
 }
 
-/// Shows icon and name of the route.
-pub(super) fn headline(ui: &mut Ui, theme: &Theme, said: &Words, route: Route) {
+/// Shows icon and name of the route, or that the level has won by itself.
+pub(super) fn headline(ui: &mut Ui, theme: &Theme, said: &Words, outcome: &Outcome) {
     const SIGN: f32 = 64.0;
+    if outcome.is_by_itself() {
+        return line(ui, said.won_by_itself, 44.0, theme.accent);
+    }
+    let route = outcome.route;
     let room = vec2(ui.available_width(), 58.0);
     let (rect, response) = ui.allocate_exact_size(room, Sense::hover());
     let name = (said.route)(route);

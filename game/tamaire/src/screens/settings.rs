@@ -142,12 +142,10 @@ fn scanning(ui: &mut Ui, theme: &Theme, said: &Words, chosen: &mut Scanning) {
         true => said.confirm,
         false => said.off,
     };
-    let speeds = [
-        (Scanning::Off, off),
-        (Scanning::Slow, "2 s"),
-        (Scanning::Medium, "1.2 s"),
-        (Scanning::Quick, "0.7 s"),
-    ];
+    let steps = [Scanning::Slow, Scanning::Medium, Scanning::Quick]
+        .map(|speed| (speed, (said.seconds)(speed.step().unwrap_or_default())));
+    let mut speeds = vec![(Scanning::Off, off)];
+    speeds.extend(steps.iter().map(|(speed, text)| (*speed, text.as_str())));
     if choice(ui, theme, said.scanning, chosen, &speeds) && !chosen.is_on() {
         let is_asked_twice = is_pending(ui, OFF);
         if !is_asked_twice {

@@ -9,7 +9,7 @@ use app_shell::widgets::{
 };
 use egui::{
     Align, Align2, Color32, FocusDirection, FontId, Id, Key, Layout, Pos2, Rect, Response, Role,
-    Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Sense, Stroke, TextEdit, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use tamaire_sound::Menu;
 
@@ -18,8 +18,21 @@ pub const EDGE: Vec2 = vec2(28.0, 22.0);
 /// Minimum width of a row with the name beside its widget [points]; in a narrower row the name is above.
 const LEAST_ROW: f32 = 560.0;
 
+/// Width and height of a button that a finger hits [points without the zoom].
+const FINGER: f32 = 44.0;
+/// Smallest zoom at which a button is still as large as a finger.
+const LEAST_ZOOM: f32 = 0.6;
+
+/// Font size of a headline [points].
+const TITLE: f32 = 38.0;
+
 /// Action of a button.
 pub type Act = fn(&mut Game);
+
+/// Returns the least width and height of a button that a finger hits [points].
+pub fn finger(ui: &Ui) -> f32 {
+    FINGER / ui.ctx().zoom_factor().clamp(LEAST_ZOOM, 1.0)
+}
 
 /// Covers the world behind a menu with translucent paper.
 pub fn dim_background(ui: &Ui, strength: u8) {
@@ -267,11 +280,39 @@ pub fn row<R>(ui: &mut Ui, theme: &Theme, name: &str, contents: impl FnOnce(&mut
     .inner
 }
 
+/// Shows a line of text with a name that can be edited, at most `most` characters. Control characters are left out.
+pub fn text_field(
+    ui: &mut Ui,
+    theme: &Theme,
+    name: &str,
+    value: &mut String,
+    most: usize,
+) -> Response {
+    let response = row(ui, theme, name, |ui| {
+        let size = vec2(ui.available_width().min(380.0), finger(ui));
+        let margin = egui::Margin::symmetric(12, 6);
+        let frame = egui::Frame::new().fill(theme.button).corner_radius(12.0);
+        let edit = TextEdit::singleline(value)
+            .char_limit(most)
+            .font(FontId::proportional(22.0))
+            .text_color(theme.ink)
+            .frame(frame.inner_margin(margin))
+            .align(Align2::LEFT_CENTER);
+        ui.add_sized(size, edit)
+    });
+    response.widget_info(|| WidgetInfo {
+        label: Some(name.into()),
+        ..WidgetInfo::text_edit(true, value.clone(), value.clone(), name)
+    });
+    value.retain(|letter| !letter.is_control());
+    response
+}
+
 /// Shows a headline.
 pub fn title(ui: &mut Ui, theme: &Theme, text: &str) {
     ui.label(
         egui::RichText::new(text)
-            .size(38.0)
+            .size(TITLE)
             .color(theme.ink)
             .strong(),
     );
@@ -279,39 +320,42 @@ pub fn title(ui: &mut Ui, theme: &Theme, text: &str) {
 
 /// Shows the top of a screen with a back button and a headline; returns the button's response.
 pub fn header(ui: &mut Ui, theme: &Theme, back: &str, text: &str) -> Response {
-    header_with(ui, theme, back, text, |_| ()).0
+    header_with(ui, theme, back, text, None).0
 }
 
 /// Shows a [`header`] with a button on the right that opens a file, where file dialogs exist.
 pub fn header_to_open(ui: &mut Ui, game: &mut Game, text: &str) -> Response {
     let (theme, said) = (game.theme(), game.words());
+    // The system's file dialog cannot be operated with a single switch.
     let can_pick = HAS_DIALOG && !game.settings.scanning.is_on();
-    let (back, opens) = header_with(ui, &theme, said.back, text, |ui| {
-        let size = vec2(150.0, 48.0);
-        // The system's file dialog cannot be operated with a single switch.
-        can_pick && button(ui, &theme, said.open, size, ButtonStyle::Other).clicked()
-    });
+    let right = can_pick.then_some(said.open);
+    let (back, opens) = header_with(ui, &theme, said.back, text, right);
     if opens {
         game.ask_for_file();
     }
     back
 }
 
-/// Width of a header below which its headline is below its buttons [points].
-const NARROW: f32 = 480.0;
-
-/// Shows a header with the contents `right` at its right end. Returns the back button's response and the
-/// result of `right`.
-fn header_with<R>(
+/// Shows a header with the button `right` at its right end. Returns the back button's response and whether the other
+/// button is pressed.
+fn header_with(
     ui: &mut Ui,
     theme: &Theme,
     back: &str,
     text: &str,
-    right: impl FnOnce(&mut Ui) -> R,
-) -> (Response, R) {
-    let room = vec2(ui.available_width(), 56.0);
+    right: Option<&str>,
+) -> (Response, bool) {
+    const WIDE: f32 = 140.0;
+    const BETWEEN: f32 = 16.0;
+    let size = vec2(WIDE, finger(ui).max(48.0));
+    let room = vec2(ui.available_width(), size.y + 8.0);
     let layout = Layout::left_to_right(Align::Center);
-    let is_narrow = room.x < NARROW;
+    let font = FontId::proportional(TITLE);
+    let galley = { ui.painter() }.layout_no_wrap(text.to_string(), font, theme.ink);
+    let width = galley.size().x;
+    let buttons = if right.is_some() { 2.0 } else { 1.0 };
+    // A headline without room beside the buttons is below them.
+    let is_below = width + buttons * (WIDE + BETWEEN) + BETWEEN > room.x;
     let inner = ui.allocate_ui_with_layout(room, layout, |ui| {
         // The next widget may be far to the right, where egui's downward search does not find it. So the
         // arrow keys move the focus from the back button in the order of the widgets.
@@ -319,15 +363,18 @@ fn header_with<R>(
         if ui.memory(|memory| memory.has_focus(id)) {
             step_through(ui);
         }
-        let response = button(ui, theme, back, vec2(140.0, 48.0), ButtonStyle::Other);
-        ui.add_space(16.0);
-        if !is_narrow {
+        let response = button(ui, theme, back, size, ButtonStyle::Other);
+        ui.add_space(BETWEEN);
+        if !is_below {
             title(ui, theme, text);
         }
-        let right = ui.with_layout(Layout::right_to_left(Align::Center), right);
-        (response, right.inner)
+        let right_to_left = Layout::right_to_left(Align::Center);
+        let opens = ui.with_layout(right_to_left, |ui| {
+            right.is_some_and(|text| button(ui, theme, text, size, ButtonStyle::Other).clicked())
+        });
+        (response, opens.inner)
     });
-    if is_narrow {
+    if is_below {
         title(ui, theme, text);
     }
     ui.add_space(6.0);
@@ -347,11 +394,27 @@ fn step_through(ui: &Ui) {
     }
 }
 
-/// Area of a page. It reaches down to the lower edge of the window, where the contents scroll out of sight.
+/// Area of a page. It reaches down to the notices, or to the lower edge of the window, where the contents scroll out of
+/// sight.
 pub fn page_rect(ui: &Ui) -> Rect {
     let mut rect = ui.max_rect().shrink2(EDGE);
-    rect.max.y = ui.max_rect().bottom();
+    rect.max.y = ui.max_rect().bottom() - notices_height(ui);
     rect
+}
+
+/// Id under which the height of the notices below a page is stored.
+fn notices_id() -> Id {
+    Id::unique("height of the notices below a page")
+}
+
+/// Returns the height of the notices below a page [points], 0 without notices.
+pub fn notices_height(ui: &Ui) -> f32 {
+    ui.data(|data| data.get_temp(notices_id())).unwrap_or(0.0)
+}
+
+/// Notes the height of the notices below a page [points].
+pub fn note_notices_height(ui: &Ui, height: f32) {
+    ui.data_mut(|data| data.insert_temp(notices_id(), height));
 }
 
 /// Shows the scrolling part of a screen: a column of at most `width` points with room for focus rings. The
@@ -362,6 +425,7 @@ pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui))
         .id_salt(name)
         .auto_shrink(false);
     let output = area.show(ui, |ui| {
+        follow_notices(ui);
         let all = ui.available_width();
         let inner = (all - 2.0 * (RING + 2.0)).min(width);
         let side = 0.5 * (all - inner);
@@ -395,6 +459,18 @@ pub fn page(ui: &mut Ui, name: &str, width: f32, contents: impl FnOnce(&mut Ui))
         mesh.add_triangle(1, 2, 3);
         ui.painter().add(mesh);
     }
+}
+
+/// Scrolls a page by the height of new notices, so that they do not cover the button that was pressed.
+fn follow_notices(ui: &Ui) {
+    let id = Id::unique("height of the notices in the last frame");
+    let height = notices_height(ui);
+    let before: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(0.0);
+    if height > before {
+        let by = vec2(0.0, before - height);
+        ui.scroll_with_delta_animation(by, egui::style::ScrollAnimation::none());
+    }
+    ui.data_mut(|data| data.insert_temp(id, height));
 }
 
 /// Margin around a column [points].

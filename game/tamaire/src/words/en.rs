@@ -33,6 +33,7 @@ pub(super) const WORDS: Words = Words {
         Route::Shave => "Shaved to fit!",
         Route::Mix => "Shaved and squeezed!",
     },
+    won_by_itself: "It wins by itself!",
     wish: |wish| {
         let mut parts = Vec::new();
         if let Some(route) = wish.route {
@@ -113,7 +114,10 @@ pub(super) const WORDS: Words = Words {
     save: "Save replay",
     delete: "Delete",
     confirm: "Really?",
-    saved: "Saved",
+    saved: |file, folder| match folder {
+        Some(folder) => format!("Saved as {file} in {folder}"),
+        None => format!("Saved as {file}"),
+    },
     open_folder: "Open folder",
     folder_not_opened: "The folder could not be opened:",
     slow: |share| {
@@ -149,13 +153,7 @@ pub(super) const WORDS: Words = Words {
     },
     assisted: "easier play",
     assist_ignored: |name| format!("\"{name}\" is off here: this level cannot be won with it."),
-    legend: [
-        "won",
-        "star earned",
-        "squeezed in whole",
-        "shaved to fit",
-        "in 3D",
-    ],
+    legend: ["won", "star earned", "squeezed in whole", "shaved to fit"],
     language: "Language",
     volume: "Volume",
     effects: "Effects",

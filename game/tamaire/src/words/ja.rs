@@ -35,6 +35,7 @@ pub(super) const WORDS: Words = Words {
         Route::Shave => "けずって 入った！",
         Route::Mix => "けずって おしこんだ！",
     },
+    won_by_itself: "ひとりでに 入ったよ！",
     wish: |wish| {
         let mut parts = Vec::new();
         if let Some(route) = wish.route {
@@ -109,7 +110,10 @@ pub(super) const WORDS: Words = Words {
     save: "リプレイを保存",
     delete: "けす",
     confirm: "けしていい？",
-    saved: "保存しました",
+    saved: |file, folder| match folder {
+        Some(folder) => format!("{folder} に {file} を 保存しました"),
+        None => format!("{file} を 保存しました"),
+    },
     open_folder: "フォルダーをひらく",
     folder_not_opened: "フォルダーを ひらけませんでした：",
     slow: |share| {
@@ -141,7 +145,7 @@ pub(super) const WORDS: Words = Words {
     assists_section: "やさしくする（つぎのラウンドから）",
     assist: |assist| match assist {
         Assist::WiderBasket => "広いかご",
-        Assist::Unbreakable => "ちぎれない体",
+        Assist::Unbreakable => "ちぎれない からだ",
     },
     assisted: "やさしいモード",
     assist_ignored: |name| {
@@ -152,7 +156,6 @@ pub(super) const WORDS: Words = Words {
         "目標クリア",
         "まるごと おしこんだ",
         "けずって 入れた",
-        "3D",
     ],
     language: "ことば",
     volume: "音量",

@@ -27,6 +27,8 @@ pub struct Words {
     pub next: &'static str,
     pub other_way: fn(Route) -> &'static str,
     pub route: fn(Route) -> &'static str,
+    /// Headline after a win before any hand moved.
+    pub won_by_itself: &'static str,
     pub wish: fn(&Wish) -> String,
     pub summary: fn(&Outcome) -> [(&'static str, String); 4],
     pub new_best: &'static str,
@@ -68,7 +70,8 @@ pub struct Words {
     pub save: &'static str,
     pub delete: &'static str,
     pub confirm: &'static str,
-    pub saved: &'static str,
+    /// Message about a saved file, with its name and its folder.
+    pub saved: fn(&str, Option<&str>) -> String,
     pub open_folder: &'static str,
     pub folder_not_opened: &'static str,
     pub slow: fn(f64) -> String,
@@ -97,7 +100,7 @@ pub struct Words {
     pub assist: fn(Assist) -> &'static str,
     pub assisted: &'static str,
     pub assist_ignored: fn(&str) -> String,
-    pub legend: [&'static str; 5],
+    pub legend: [&'static str; 4],
     pub language: &'static str,
     pub volume: &'static str,
     pub effects: &'static str,

@@ -253,7 +253,8 @@ fn photos_and_clips_are_queued_and_saved_at_reported_paths() {
         let file = pictures.join(name);
         let bytes = fs::read(&file).expect("the file was saved");
         assert!(bytes.starts_with(magic), "{name}");
-        assert!(told.contains(&file.display().to_string()), "{told}");
+        let place = format!("Saved as {name} in {}", pictures.display());
+        assert!(told.contains(&place), "{told}");
     }
     assert_eq!(fs::read_dir(&pictures).unwrap().count(), names.len());
 }
@@ -281,7 +282,7 @@ fn message_about_saved_file_leaves_result_visible_and_opens_folder() {
     click(&mut window, "Save replay");
     wait_for_files(&mut window);
     assert!(
-        notices(&window).contains("Saved classic-1"),
+        notices(&window).contains("Saved as classic-1"),
         "{}",
         notices(&window)
     );
@@ -300,7 +301,7 @@ fn message_about_saved_file_leaves_result_visible_and_opens_folder() {
     game(&mut window).settings.scanning = Scanning::Slow;
     game(&mut window).keep_replay();
     wait_for_files(&mut window);
-    assert!(notices(&window).contains("Saved classic-2"));
+    assert!(notices(&window).contains("Saved as classic-2"));
     assert!(window.query_by_label("Open folder").is_none());
 }
 

@@ -8,6 +8,7 @@ mod fingers;
 mod help;
 mod hostile;
 mod kept;
+mod legible;
 mod links;
 mod making;
 mod models;

@@ -233,7 +233,11 @@ fn own_levels_are_saved_as_a_pack_that_opens_elsewhere() {
             click(&mut first, label);
             wait_for_files(&mut first);
             let told = notices(&first);
-            assert!(told.contains(path.to_str().unwrap()), "{told}");
+            let folder = path.parent().unwrap().to_str().unwrap();
+            assert!(
+                told.contains("my-levels.zip") && told.contains(folder),
+                "{told}"
+            );
         }
         let packs = fs::read_dir(folder.path().join("replays")).unwrap().count();
         assert_eq!(packs, 1, "an equal pack is not written twice");

@@ -156,9 +156,8 @@ fn own_level(window: &mut Window) {
     drop_file(window, level_file("cat.png"));
     game(window).go(Screen::Levels);
     frames(window, 3);
-    press(window, Key::ArrowDown);
-    press(window, Key::Enter);
-    frames(window, 30);
+    button(window, "Remove: cat").scroll_to_me();
+    frames(window, 60);
     pictures(window, "own");
 }
 

@@ -4,6 +4,7 @@ use crate::window::*;
 use egui_kittest::kittest::Queryable;
 use tamaire::game::Screen;
 use tamaire::platform::{Files, Kind};
+use tamaire::words::Language;
 use tamaire_play::Route;
 
 #[test]
@@ -34,7 +35,8 @@ fn saved_round_shows_level_date_and_result() {
     assert!(std::sync::Arc::ptr_eq(&classic.level, level));
     // The label is, for example, "Classic 1, 2026-11-22 23:10, It went in whole! 9.7 s".
     window.get_by_label_contains("Classic 1, 20");
-    window.get_by_label_contains(&format!("It went in whole! {:.1} s", classic.seconds));
+    let time = (Language::English.words().seconds)(classic.seconds);
+    window.get_by_label_contains(&format!("It went in whole! {time}"));
 }
 
 #[test]

@@ -1,10 +1,12 @@
 //! Page on which a level is checked, kept and sent.
 
-use super::super::widgets::{card, dim_background, focus_first, header, page, page_rect};
-use super::properties::{press, write};
-use crate::game::Game;
+use super::super::widgets::{
+    card, dim_background, finger, focus_first, header, page, page_rect, text_field,
+};
+use crate::game::{Game, MOST_NAME};
 use app_shell::Theme;
-use egui::{Color32, Key, RichText, Sense, Ui, UiBuilder, WidgetInfo, vec2};
+use app_shell::widgets::{ButtonStyle, button, least_letters};
+use egui::{Color32, Id, Key, RichText, Sense, Ui, UiBuilder, WidgetInfo, vec2};
 use tamaire_maker::check::{Check, Finding};
 use tamaire_sound::Menu;
 
@@ -12,6 +14,16 @@ use tamaire_sound::Menu;
 const WIDE: f32 = 700.0;
 /// Width and height of the QR code [points].
 const CODE: f32 = 560.0;
+
+/// Id under which is stored whether the field of the name gets the focus.
+fn naming_id() -> Id {
+    Id::unique("the field of the name gets the focus")
+}
+
+/// Focuses the field of the name when the page is shown.
+pub(in crate::screens) fn focus_name(ui: &Ui) {
+    ui.data_mut(|data| data.insert_temp(naming_id(), true));
+}
 
 pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
     dim_background(ui, 255);
@@ -54,14 +66,17 @@ fn names(game: &mut Game, ui: &mut Ui, theme: &Theme) {
     let known = game.draft_name().to_string();
     let mut name = game.maker.typed_name.clone().unwrap_or(known);
     let before = name.clone();
-    write(ui, theme, words.name, &mut name);
+    let field = text_field(ui, theme, words.name, &mut name, MOST_NAME);
+    if ui.data_mut(|data| data.remove_temp(naming_id())) == Some(true) {
+        field.request_focus();
+    }
     if name != before {
         game.name_draft(&name);
         // Spaces at the end stay while the player types.
         game.maker.typed_name = Some(name);
     }
     let mut maker = game.settings.maker_name.clone();
-    write(ui, theme, words.made_by, &mut maker);
+    text_field(ui, theme, words.made_by, &mut maker, MOST_NAME);
     if maker != game.settings.maker_name {
         game.settings.maker_name = maker;
         game.keep_settings();
@@ -72,11 +87,9 @@ fn names(game: &mut Game, ui: &mut Ui, theme: &Theme) {
 fn checks(game: &mut Game, ui: &mut Ui, theme: &Theme) {
     let (said, words) = (game.words(), game.making());
     let line = |ui: &mut Ui, sign: &str, text: &str, ink: Color32| {
-        ui.label(
-            RichText::new(format!("{sign}  {text}"))
-                .size(21.0)
-                .color(ink),
-        );
+        let size = least_letters(ui.ctx()).max(21.0);
+        let text = RichText::new(format!("{sign}  {text}"));
+        ui.label(text.size(size).color(ink));
     };
     let won = game.maker.summary().won;
     if let Some(problem) = game.draft_problem() {
@@ -98,6 +111,10 @@ fn checks(game: &mut Game, ui: &mut Ui, theme: &Theme) {
     };
     let findings = check.findings();
     if check.level().has_basket() {
+        let wins_by_itself = matches!(findings.by_itself, Finding::Yes(_));
+        if wins_by_itself {
+            line(ui, "!", words.wins_by_itself, theme.accent);
+        }
         let [squeezed, shaved] = words.can_be;
         for (finding, name) in [(findings.squeezed, squeezed), (findings.shaved, shaved)] {
             if let Some((sign, text, ink)) = told(finding, name) {
@@ -116,7 +133,7 @@ fn checks(game: &mut Game, ui: &mut Ui, theme: &Theme) {
             }
             None => line(ui, "–", words.not_won_by_maker, theme.ink),
         }
-        if let Finding::Yes(_) = findings.straight {
+        if matches!(findings.straight, Finding::Yes(_)) && !wins_by_itself {
             line(ui, "!", words.straight_wins, theme.accent);
         }
     }
@@ -131,6 +148,8 @@ fn checks(game: &mut Game, ui: &mut Ui, theme: &Theme) {
         line(ui, sign, &text, ink);
     }
     if !check.is_done() {
+        let trying = (words.bots_try)(check.played_seconds());
+        line(ui, "…", &trying, theme.faint);
         progress(ui, theme, check);
     }
 }
@@ -147,6 +166,12 @@ fn progress(ui: &mut Ui, theme: &Theme, check: &Check) {
     let done = rect.with_max_x(rect.left() + share * rect.width());
     ui.painter().rect_filled(done, 7.0, theme.good);
     ui.ctx().request_repaint();
+}
+
+/// Shows a button of the page. Returns whether it is pressed.
+fn press(ui: &mut Ui, theme: &Theme, text: &str, is_main: bool) -> bool {
+    let size = vec2(ui.available_width().min(400.0), finger(ui).max(48.0));
+    button(ui, theme, text, size, ButtonStyle::of(is_main)).clicked()
 }
 
 /// Shows the buttons that keep and send the level.

@@ -6,7 +6,7 @@ mod properties;
 mod shelf;
 mod signs;
 
-pub(super) use finish::show as finish;
+pub(super) use finish::{focus_name, show as finish};
 pub(super) use properties::{beside_properties, show as properties};
 
 use super::hud;

@@ -1,12 +1,11 @@
 //! Page with the properties of the selected thing, or of the level.
 
-use super::super::widgets::{card, choice, focus_first, header, page, row, slider_with};
+use super::super::widgets::{card, choice, focus_first, header, page, slider_with, text_field};
 use crate::game::{Game, MOST_NAME};
 use crate::words::{Language, MakingWords, Words};
 use app_shell::Theme;
 use app_shell::theme::PAGE;
-use app_shell::widgets::{ButtonStyle, button};
-use egui::{FontId, Key, Rect, TextEdit, Ui, UiBuilder, WidgetInfo, vec2};
+use egui::{Key, Rect, Ui, UiBuilder, vec2};
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{
     BasketText, BodyText, FieldText, HandText, JointKindText, JointText, MotionTypeText,
@@ -195,33 +194,8 @@ impl Fields<'_> {
 
     /// Shows a line of text that can be edited.
     fn write(&mut self, name: &str, value: &mut String) {
-        write(self.ui, self.theme, name, value);
+        text_field(self.ui, self.theme, name, value, MOST_NAME);
     }
-}
-
-/// Shows a line of text that can be edited. Control characters and what is too long are left out.
-pub(super) fn write(ui: &mut Ui, theme: &Theme, name: &str, value: &mut String) {
-    row(ui, theme, name, |ui| {
-        let width = ui.available_width().min(380.0);
-        let frame = egui::Frame::new()
-            .fill(theme.button)
-            .corner_radius(12.0)
-            .inner_margin(egui::Margin::symmetric(12, 6));
-        frame.show(ui, |ui| {
-            let edit = TextEdit::singleline(value)
-                .char_limit(MOST_NAME)
-                .font(FontId::proportional(22.0))
-                .text_color(theme.ink)
-                .frame(egui::Frame::NONE)
-                .desired_width(width - 24.0);
-            let response = ui.add(edit);
-            response.widget_info(|| WidgetInfo {
-                label: Some(name.into()),
-                ..WidgetInfo::text_edit(true, value.clone(), value.clone(), name)
-            });
-        });
-    });
-    value.retain(|letter| !letter.is_control());
 }
 
 fn of_item(fields: &mut Fields, scene: &mut Scene, item: Item) {
@@ -755,12 +729,6 @@ fn limit_at(shown: f32, known: Option<f32>, high: f32) -> Option<f32> {
     known
         .filter(|&known| known == shown)
         .or((shown < high).then_some(shown))
-}
-
-/// Shows a row with a button.
-pub(super) fn press(ui: &mut Ui, theme: &Theme, text: &str, is_main: bool) -> bool {
-    let size = vec2(ui.available_width().min(320.0), 48.0);
-    button(ui, theme, text, size, ButtonStyle::of(is_main)).clicked()
 }
 
 #[cfg(test)]

@@ -8,20 +8,19 @@ mod tools;
 
 pub(super) use tools::{round as round_button, step_button, step_keys};
 
-use super::hud;
-use super::widgets::{dim_background, track};
+use super::widgets::{dim_background, finger, track};
 use crate::game::Game;
 use crate::input::InputMethod;
-use app_shell::widgets::{ButtonStyle, button};
+use app_shell::widgets::{ButtonStyle, button, least_letters};
 use egui::{Key, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 use tamaire_maker::drawing::PAPER;
 use tamaire_sound::Menu;
 
 /// Margin around the parts of the screen [points].
 const EDGE: f32 = 12.0;
-/// Height of the row of buttons at the top [points].
+/// Least height of the row of buttons at the top [points].
 const TOP: f32 = 48.0;
-/// Width of a column of tools in a landscape window [points].
+/// Width of the crayons in a landscape window, and least width of the tools [points].
 const SIDE: f32 = 156.0;
 /// Height of the line below the paper [points].
 const LINE: f32 = 30.0;
@@ -40,7 +39,7 @@ struct Parts {
 
 pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     dim_background(ui, 255);
-    let parts = parts(ui.max_rect(), hud::scale(game, ui));
+    let parts = parts(ui);
     let leaves = top(game, ui, parts.top);
     match game.maker.shows_block {
         false => paper::show(game, ui, parts.paper),
@@ -60,23 +59,30 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     }
 }
 
+/// Returns the place of the paper or the block.
+pub(super) fn sheet(ui: &Ui) -> Rect {
+    parts(ui).paper
+}
+
 /// Divides the screen: crayons on the left, the paper in the middle, tools on the right, or all below each other in a
-/// portrait window. `scale` enlarges the buttons.
-fn parts(screen: Rect, scale: f32) -> Parts {
+/// portrait window.
+fn parts(ui: &Ui) -> Parts {
+    let (screen, finger) = (ui.max_rect(), finger(ui));
     let all = screen.shrink(EDGE);
-    let top = all.with_max_y(all.top() + scale * TOP);
+    let top = all.with_max_y(all.top() + finger.max(TOP));
     let below = all.with_min_y(top.bottom() + EDGE);
     if screen.width() > screen.height() {
-        let middle = below.shrink2(vec2(SIDE + EDGE, 0.0));
-        let side = middle.width().min(middle.height() - LINE);
-        let centre = pos2(middle.center().x, middle.top() + 0.5 * side);
+        let side = (below.height() - LINE).min(below.width() - 2.0 * (SIDE + EDGE));
+        let centre = pos2(below.center().x, below.top() + 0.5 * side);
         let paper = Rect::from_center_size(centre, Vec2::splat(side));
         return Parts {
             top,
             crayons: below.with_max_x(below.left() + SIDE),
             paper,
-            line: Rect::from_x_y_ranges(middle.x_range(), paper.bottom()..=paper.bottom() + LINE),
-            tools: below.with_min_x(below.right() - SIDE),
+            line: paper
+                .with_min_y(paper.bottom())
+                .with_max_y(paper.bottom() + LINE),
+            tools: below.with_min_x(paper.right() + EDGE),
         };
     }
     // The tools take what the paper leaves, but at least some rows.
@@ -87,13 +93,13 @@ fn parts(screen: Rect, scale: f32) -> Parts {
         .with_min_y(paper.bottom())
         .with_max_y(paper.bottom() + LINE);
     let rest = below.with_min_y(line.bottom() + 4.0);
-    let crayons = rest.with_max_y(rest.top() + scale * tools::CRAYON_ROW);
+    let crayons = rest.with_max_y(rest.top() + tools::crayons_height(finger));
     Parts {
         top,
         crayons,
         paper,
         line,
-        tools: rest.with_min_y(crayons.bottom() + 6.0),
+        tools: rest.with_min_y(crayons.bottom() + 8.0),
     }
 }
 
@@ -101,7 +107,7 @@ fn parts(screen: Rect, scale: f32) -> Parts {
 fn top(game: &mut Game, ui: &mut Ui, rect: Rect) -> bool {
     let (theme, said, words) = (game.theme(), game.words(), game.making());
     let high = rect.height();
-    let wide = (0.3 * rect.width()).min(150.0 * high / TOP);
+    let wide = (0.3 * rect.width()).min(3.1 * high);
     let size = vec2(wide, high);
     let place = |left: f32, size: Vec2| Rect::from_min_size(pos2(left, rect.top()), size);
     let mut press = |text: &str, place: Rect, style: ButtonStyle| {
@@ -110,11 +116,13 @@ fn top(game: &mut Game, ui: &mut Ui, rect: Rect) -> bool {
         shown.inner
     };
     let back = press(said.back, place(rect.left(), size), ButtonStyle::Other);
-    let drop = press(
-        words.drop,
-        place(rect.right() - wide, size),
-        ButtonStyle::Main,
-    );
+    // A drawing for the editor goes back there.
+    let drop = if game.maker.is_alone() {
+        words.drop
+    } else {
+        words.done
+    };
+    let drop = press(drop, place(rect.right() - wide, size), ButtonStyle::Main);
     let mut leaves = back.clicked();
     if drop.clicked() {
         game.blip(Menu::Confirm);
@@ -178,7 +186,8 @@ fn told(game: &mut Game, ui: &Ui, rect: Rect) {
     } else {
         return;
     };
-    let galley = app_shell::widgets::fitted(ui.painter(), &text, 18.0, rect.width(), ink);
+    let size = least_letters(ui.ctx()).max(18.0);
+    let galley = app_shell::widgets::fitted(ui.painter(), &text, size, rect.width(), ink);
     ui.painter()
         .galley(rect.center() - 0.5 * galley.size(), galley, ink);
 }

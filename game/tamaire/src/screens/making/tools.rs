@@ -1,20 +1,25 @@
 //! Crayons and tools around the paper.
 
 use super::super::icons;
+use super::super::widgets::finger;
 use crate::game::{DrawingTool, Game, WIDTHS};
 use app_shell::Theme;
-use app_shell::widgets::{fitted, focus_ring, highlight};
+use app_shell::widgets::{fitted, focus_ring, highlight, is_on, least_letters};
 use egui::{
-    Color32, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, Ui, Vec2,
-    WidgetInfo, pos2, vec2,
+    Color32, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, Tooltip, Ui,
+    Vec2, WidgetInfo, pos2, vec2,
 };
 use fuwafuwa_scenes::scene::Form;
 use tamaire_maker::drawing::Drawing;
 use tamaire_play::playground::Stuff;
 use tamaire_sound::Menu;
 
-/// Height of the row of crayons in a portrait window [points].
-pub(super) const CRAYON_ROW: f32 = 84.0;
+/// Number of columns of crayons in a portrait window.
+const CRAYON_COLUMNS: usize = 3;
+/// Maximum height of a crayon with the gap below it [points].
+const CRAYON: f32 = 84.0;
+/// Length of the tip of a crayon [points].
+const TIP: f32 = 22.0;
 /// Side of a tool [points].
 const TOOL: f32 = 46.0;
 /// Gap between tools [points].
@@ -45,16 +50,22 @@ enum Tool {
 }
 
 impl Tool {
-    /// Returns the tools for the drawing that is shown, in order.
-    fn all(game: &Game) -> Vec<Self> {
-        let block = game.maker.shows_block;
+    /// Returns the tools without a caption for the drawing that is shown, in order.
+    fn plain(game: &Game) -> Vec<Self> {
         let mut all: Vec<Self> = (0..WIDTHS.len()).map(Self::Width).collect();
         all.extend([DrawingTool::Crayon, DrawingTool::Paint, DrawingTool::Eraser].map(Self::Use));
-        if !block {
+        if !game.maker.shows_block {
             all.push(Self::Use(DrawingTool::Bucket));
         }
         all.extend(STAMPS.map(DrawingTool::Stamp).map(Self::Use));
         all.extend([Self::Mirror, Self::Closes, Self::Clear]);
+        all
+    }
+
+    /// Returns the tools with a caption for the drawing that is shown, in order.
+    fn captioned(game: &Game) -> Vec<Self> {
+        let block = game.maker.shows_block;
+        let mut all = Vec::new();
         match block {
             true => all.extend([Self::Turn(0), Self::Turn(1), Self::ToPaper]),
             false if game.maker.may_turn_solid() => {
@@ -69,6 +80,22 @@ impl Tool {
             all.push(Self::Picture);
         }
         all
+    }
+
+    /// Returns the short text under the sign, empty if there is none.
+    fn caption(self, game: &Game) -> &'static str {
+        let words = game.making();
+        let [puff, lathe, slab, build, picture] = words.tool_captions;
+        match self {
+            Self::Puff => puff,
+            Self::Lathe => lathe,
+            Self::Slab => slab,
+            Self::Build => build,
+            Self::Picture => picture,
+            Self::Turn(side) => words.nudge[side],
+            Self::ToPaper => words.paper,
+            _ => "",
+        }
     }
 
     fn name(self, game: &Game) -> &'static str {
@@ -261,52 +288,42 @@ fn crayon_icon(painter: &Painter, at: Pos2, scale: f32, colour: Color32, ink: Co
     painter.add(Shape::convex_polygon(tip, colour, line));
 }
 
+/// Returns the height of the crayons in a portrait window [points].
+pub(super) fn crayons_height(finger: f32) -> f32 {
+    Stuff::ALL.len().div_ceil(CRAYON_COLUMNS) as f32 * (finger + GAP) - GAP
+}
+
 /// Shows the crayons as fat sticks. The chosen one sticks out.
 pub(super) fn crayons(game: &mut Game, ui: &mut Ui, rect: Rect) {
     let theme = game.theme();
-    let is_column = rect.height() > rect.width();
-    let count = Stuff::ALL.len() as f32;
+    let columns = match rect.height() > rect.width() {
+        true => 1,
+        false => CRAYON_COLUMNS,
+    };
+    let rows = Stuff::ALL.len().div_ceil(columns) as f32;
+    let step = vec2(
+        (rect.width() + GAP) / columns as f32,
+        ((rect.height() + GAP) / rows).min(CRAYON),
+    );
     for (place, stuff) in Stuff::ALL.into_iter().enumerate() {
         let number = stuff.number();
-        let share = place as f32 / count;
-        let cell = match is_column {
-            true => {
-                let high = (rect.height() / count).min(84.0);
-                let top = rect.top() + high * place as f32;
-                Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), high - GAP))
-            }
-            false => {
-                let wide = rect.width() / count;
-                let left = rect.left() + share * rect.width();
-                Rect::from_min_size(pos2(left, rect.top()), vec2(wide - GAP, rect.height()))
-            }
-        };
+        let corner = vec2((place % columns) as f32, (place / columns) as f32);
+        let cell = Rect::from_min_size(rect.min + corner * step, step - Vec2::splat(GAP));
         let name = (game.words().stuff)(stuff);
         let is_chosen = game.maker.crayon == number;
         let response = chooser(ui, cell, name, Some(is_chosen));
         let lively = highlight(ui, &response);
         let painter = ui.painter();
         let fill = crayon_colour(game, number);
-        draw_crayon(painter, &theme, cell, is_column, fill, is_chosen, lively);
-        let room = cell.width() - 12.0;
-        let ink = theme.ink;
-        let galley = fitted(
-            painter,
-            name,
-            if is_column { 18.0 } else { 22.0 },
-            room,
-            ink,
-        );
-        let at = match is_column {
-            true => pos2(cell.left() + 12.0, cell.center().y - 0.5 * galley.size().y),
-            false => pos2(
-                cell.center().x - 0.5 * galley.size().x,
-                cell.bottom() - galley.size().y - 2.0,
-            ),
-        };
+        draw_crayon(painter, &theme, cell, fill, is_chosen, lively);
+        let size = least_letters(ui.ctx()).max(18.0);
+        // The label is on the stem of the crayon.
+        let room = cell.width() - 28.0 - TIP;
+        let galley = fitted(painter, name, size, room, theme.ink);
+        let at = cell.left_center() + vec2(12.0, -0.5 * galley.size().y);
         let label = Rect::from_min_size(at, galley.size()).expand2(vec2(4.0, 0.0));
         painter.rect_filled(label, 6.0, theme.card.gamma_multiply(0.82));
-        painter.galley(at, galley, ink);
+        painter.galley(at, galley, theme.ink);
         focus_ring(ui, &response, cell, 12.0, &theme);
         if response.clicked() {
             game.blip(Menu::Confirm);
@@ -319,42 +336,26 @@ pub(super) fn crayons(game: &mut Game, ui: &mut Ui, rect: Rect) {
     }
 }
 
-/// Draws a crayon into a cell of a column, pointing to the right, or of a row, pointing up.
+/// Draws a crayon into a cell, pointing to the right.
 fn draw_crayon(
     painter: &Painter,
     theme: &Theme,
     cell: Rect,
-    is_column: bool,
     fill: Color32,
     is_chosen: bool,
     lively: f32,
 ) {
     let out = if is_chosen { 0.0 } else { 12.0 } - 3.0 * lively;
     let line = Stroke::new(if is_chosen { 3.0 } else { 1.5 }, theme.ink);
-    let points = match is_column {
-        true => {
-            let (right, half) = (cell.right() - out, 0.36 * cell.height());
-            let (y, tip) = (cell.center().y, 22.0);
-            vec![
-                pos2(cell.left(), y - half),
-                pos2(right - tip, y - half),
-                pos2(right, y),
-                pos2(right - tip, y + half),
-                pos2(cell.left(), y + half),
-            ]
-        }
-        false => {
-            let (top, half) = (cell.top() + out, 0.36 * cell.width());
-            let (x, tip) = (cell.center().x, 16.0);
-            vec![
-                pos2(x - half, cell.bottom()),
-                pos2(x - half, top + tip),
-                pos2(x, top),
-                pos2(x + half, top + tip),
-                pos2(x + half, cell.bottom()),
-            ]
-        }
-    };
+    let (right, half) = (cell.right() - out, 0.36 * cell.height());
+    let y = cell.center().y;
+    let points = vec![
+        pos2(cell.left(), y - half),
+        pos2(right - TIP, y - half),
+        pos2(right, y),
+        pos2(right - TIP, y + half),
+        pos2(cell.left(), y + half),
+    ];
     painter.add(Shape::convex_polygon(points, fill, line));
 }
 
@@ -440,34 +441,63 @@ fn turn_back(painter: &Painter, at: Pos2, scale: f32, ink: Color32, way: f32) {
     painter.add(Shape::convex_polygon(head, ink, Stroke::NONE));
 }
 
-/// Shows the tools in rows.
+/// Shows the tools in rows: those without a caption, then those with one.
 pub(super) fn show(game: &mut Game, ui: &mut Ui, rect: Rect) {
     let theme = game.theme();
-    let all = Tool::all(game);
-    let (columns, side) = grid(all.len(), rect.size());
-    for (place, tool) in all.into_iter().enumerate() {
+    let (plain, captioned) = (Tool::plain(game), Tool::captioned(game));
+    let counts = [plain.len(), captioned.len()];
+    let size = least_letters(ui.ctx()).max(15.0);
+    // Captions are left out where the tools would be too small for fingers.
+    let line = 1.4 * size;
+    let with_captions = grid(counts, rect.size(), line);
+    let has_captions = with_captions.1 >= finger(ui);
+    let (line, (columns, side)) = match has_captions {
+        true => (line, with_captions),
+        false => (0.0, grid(counts, rect.size(), 0.0)),
+    };
+    let spare = rect.width() - columns as f32 * (side + GAP) + GAP;
+    let first = rect.min + vec2(0.5 * spare, 0.0);
+    let rows = plain.len().div_ceil(columns);
+    let below = first + vec2(0.0, rows as f32 * (side + GAP));
+    // Clearing is at the end of its row, where no other button is on the next sheet.
+    let clear = rows * columns - 1;
+    let in_plain = plain.into_iter().enumerate().map(|(place, tool)| {
+        let place = if tool == Tool::Clear { clear } else { place };
+        (first, place, side + GAP, tool)
+    });
+    let captioned = captioned.into_iter().enumerate();
+    let in_captioned = captioned.map(|(place, tool)| (below, place, side + GAP + line, tool));
+    for (first, place, step, tool) in in_plain.chain(in_captioned) {
         let corner = vec2((place % columns) as f32, (place / columns) as f32);
-        let spare = rect.width() - columns as f32 * (side + GAP) + GAP;
-        let at = rect.min + vec2(0.5 * spare, 0.0) + (side + GAP) * corner;
+        let at = first + corner * vec2(side + GAP, step);
         let place = Rect::from_min_size(at, Vec2::splat(side));
         let (name, is_chosen) = (tool.name(game), tool.is_chosen(game));
         let response = round(ui, &theme, place, name, is_chosen, |painter, at, scale| {
             tool.draw(game, painter, at, scale, theme.ink);
         });
+        if has_captions {
+            let (painter, room) = (ui.painter(), side + GAP);
+            let caption = fitted(painter, tool.caption(game), size, room, theme.ink);
+            let at = place.center_bottom() - vec2(0.5 * caption.size().x, 0.0);
+            painter.galley(at, caption, theme.ink);
+        }
         if response.clicked() {
             tool.press(game);
         }
     }
 }
 
-/// Returns the number of columns and the side of `count` square tools in a room, as large as possible.
-fn grid(count: usize, room: Vec2) -> (usize, f32) {
+/// Returns the number of columns and the side of square tools in a room, as large as possible: a number of tools without a
+/// caption, and below them a number of tools with captions of height `line` [points].
+fn grid([plain, captioned]: [usize; 2], room: Vec2, line: f32) -> (usize, f32) {
     let side = |columns: usize| {
-        let rows = count.div_ceil(columns) as f32;
+        let below = captioned.div_ceil(columns);
+        let rows = (plain.div_ceil(columns) + below) as f32;
+        let high = room.y - line * below as f32;
         let wide = (room.x + GAP) / columns as f32 - GAP;
-        wide.min((room.y + GAP) / rows - GAP).min(2.4 * TOOL)
+        wide.min((high + GAP) / rows - GAP).min(2.4 * TOOL)
     };
-    let best = (1..=count.max(1)).max_by(|&a, &b| side(a).total_cmp(&side(b)));
+    let best = (1..=plain.max(1)).max_by(|&a, &b| side(a).total_cmp(&side(b)));
     let columns = best.unwrap_or(1);
     (columns, side(columns).max(20.0))
 }
@@ -504,5 +534,11 @@ pub(in crate::screens) fn round(
     }
     draw(painter, middle, rect.width() / TOOL);
     focus_ring(ui, &response, rect, radius, theme);
-    response.on_hover_text(egui::RichText::new(name).size(17.0))
+    let label = egui::RichText::new(name).size(least_letters(ui.ctx()).max(17.0));
+    if is_on(ui, &response) {
+        let tooltip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), response.id, &response);
+        tooltip.gap(6.0).show(|ui| ui.label(label));
+        return response;
+    }
+    response.on_hover_text(label)
 }

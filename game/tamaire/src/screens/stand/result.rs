@@ -2,7 +2,7 @@
 
 use super::super::code;
 use super::super::play;
-use super::super::result::{headline, line, numbers, other};
+use super::super::result::{beaten_route, headline, line, numbers, other};
 use super::super::widgets::{card, column_beside, dim_background, focus_first};
 use super::language::above;
 use crate::exhibit::Stand;
@@ -37,17 +37,14 @@ pub(super) fn show(stand: &mut Stand, game: &mut Game, ui: &mut Ui) {
     };
     let (theme, said) = (game.theme(), game.words());
     let level = game.bout.round().level().clone();
-    let dared = level
-        .routes()
-        .contains(&other(outcome.route))
-        .then_some(outcome.route);
+    let dared = beaten_route(&level, &outcome);
     let has_others = stand.config.levels.0.len() > 1;
     let area = UiBuilder::new().max_rect(above(ui.max_rect()));
     let show = |ui: &mut Ui| {
         column_beside(ui, WIDE, (0.0, false), |ui| {
             let wish = card(ui, &theme, |ui| {
                 ui.spacing_mut().item_spacing = Vec2::ZERO;
-                headline(ui, &theme, said, outcome.route);
+                headline(ui, &theme, said, &outcome);
                 ui.add_space(GAP);
                 numbers(ui, &theme, said, &outcome);
                 ui.add_space(2.0 * GAP);
