@@ -300,8 +300,9 @@ mod tests {
         game.basket.as_mut().unwrap().half = [3.0; 3];
         let mut check = Check::new(Arc::new(Level::from_scene("won", scene).unwrap()));
         assert_eq!(check.played_seconds(), 0.0);
+        let now = || 0.0;
         while check.findings().by_itself == Finding::Open {
-            check.go_on(1.0, || 0.0);
+            check.tick(&now);
         }
         let Finding::Yes(Some(seconds)) = check.findings().by_itself else {
             panic!("{:?}", check.findings());
