@@ -37,8 +37,11 @@ pub struct Material {
     /// rate, a bounce would stop the rotation. With 0, crumbs roll like balls. Larger pieces have corners and do
     /// not use it. A body of several materials uses the mean over its voxels.
     pub rolling_resistance: f32,
-    /// Tensile strength of a smooth surface [Pa], default 1000: the tension at which a crack starts; infinite = no
-    /// crack starts. A player can tear a body with a strength of a fifth of Young's modulus by hand.
+    /// Tensile strength of a smooth surface [Pa], default 1000: the true (Cauchy) stress at which a crack starts;
+    /// infinite = no crack starts. A player can tear a body with a strength of a fifth of Young's modulus by hand.
+    ///
+    /// Sources publish the nominal stress, the force per original area. The true stress of an incompressible bar at break is
+    /// the nominal one times the stretch; [`LibraryMaterial`](crate::library::LibraryMaterial::material) converts it.
     ///
     /// The tension is the mean over the radius 0.5 (toughness / strength)² [Taylor 2007]. Below a voxel, and above
     /// 8 voxels in 2D or 4 in 3D, the mean is extrapolated, to at least 1/64 and at most 64 voxels. A crack that is

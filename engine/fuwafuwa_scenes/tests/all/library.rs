@@ -53,12 +53,16 @@ fn value(quantity: Quantity, field: &toml::Table) -> String {
         [low, high] => [low, high],
         _ => panic!("{field:?}"),
     });
+    let strain = field.get("strain").map(|strain| match numbers(strain)[..] {
+        [low, high] => [low, high],
+        _ => panic!("{field:?}"),
+    });
     let option = |key: &str| field.get(key).map(|value| value.as_float().unwrap());
     let source = field["source"].as_str().unwrap();
     assert!(!source.is_empty());
     format!(
         "            LibraryValue {{\n                quantity: Quantity::{quantity:?},\n                value: {value:?},\n                \
-         spread: {spread:?},\n                temperature: {:?},\n                rate: {:?},\n                source: {source:?},\n            }},\n",
+         spread: {spread:?},\n                temperature: {:?},\n                rate: {:?},\n                strain: {strain:?},\n                source: {source:?},\n            }},\n",
         option("temperature"),
         option("rate"),
     )
