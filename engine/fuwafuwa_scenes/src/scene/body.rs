@@ -42,14 +42,16 @@ pub struct MaterialText {
     pub friction: Option<f32>,
     /// Rolling resistance of crumbs [1/s].
     pub rolling_resistance: Option<f32>,
-    /// Tensile strength of a smooth surface [Pa].
+    /// Tensile strength of a smooth surface [Pa]: true stress, force per stretched area. Without `hydrostatic_strength`
+    /// beside it, the greatest tension decides, also if the material `like` has a hydrostatic strength.
     pub strength: Option<f32>,
     /// Hydrostatic strength [Pa]. With it, stress in all directions counts, by the criterion of Drucker and Prager, and
     /// cracks also start inside; otherwise the greatest tension decides.
     pub hydrostatic_strength: Option<f32>,
     /// Scatter of the strength, 0 to 10: largest relative amount by which the strength of a point is raised.
     pub strength_scatter: Option<f32>,
-    /// Fracture toughness in plane strain [Pa √m].
+    /// Fracture toughness in plane strain [Pa √m]. If it is missing, the material keeps the fracture energy of the material
+    /// `like`, also with another Young's modulus or Poisson's ratio.
     pub toughness: Option<f32>,
     /// Speed of a crack up to which the fracture energy is constant [m/s], and the exponent with which it grows beyond.
     pub rate_toughening: Option<[f32; 2]>,
@@ -57,7 +59,8 @@ pub struct MaterialText {
     pub yield_strain: Option<f32>,
     /// Limit of permanent deformation, 1 to 4: largest factor by which a width can shrink permanently.
     pub plastic_limit: Option<f32>,
-    /// Whether the material never tears: infinite strength and toughness.
+    /// Whether the material never tears: infinite strength and toughness, and without `hydrostatic_strength` no
+    /// hydrostatic strength.
     pub unbreakable: bool,
     /// Colour in pictures: red, green and blue, 0 to 255 (sRGB). By default, the palette of the renderer
     /// decides by the material number. A material that differs from an earlier one only in its colour is a
@@ -284,11 +287,29 @@ impl MaterialText {
             true => f32::INFINITY,
             false => given.unwrap_or(usual),
         };
+        let elasticity = Elasticity {
+            young: self.young.unwrap_or(usual.elasticity.young),
+            poisson: self.poisson.unwrap_or(usual.elasticity.poisson),
+        };
+        // The material `like` has a published fracture energy, from which its toughness follows.
+        let toughness = match named.is_some() && elasticity != usual.elasticity {
+            true => {
+                let Elasticity { young, poisson } = elasticity;
+                let energy = f64::from(usual.fracture_energy());
+                (energy * young / (1.0 - poisson * poisson)).sqrt() as f32
+            }
+            false => usual.toughness,
+        };
+        // The hydrostatic strength of the material `like` belongs to its own tensile strength.
+        let strength_criterion = match self.hydrostatic_strength {
+            Some(hydrostatic) => StrengthCriterion::DruckerPrager { hydrostatic },
+            None if self.unbreakable || self.strength.is_some() => {
+                StrengthCriterion::GreatestTension
+            }
+            None => usual.strength_criterion,
+        };
         Material {
-            elasticity: Elasticity {
-                young: self.young.unwrap_or(usual.elasticity.young),
-                poisson: self.poisson.unwrap_or(usual.elasticity.poisson),
-            },
+            elasticity,
             stress_law: self.stress_law.map_or(usual.stress_law, StressLaw::from),
             prony: match self.prony.is_empty() {
                 true => usual.prony,
@@ -308,19 +329,30 @@ impl MaterialText {
             friction: self.friction.unwrap_or(usual.friction),
             rolling_resistance: self.rolling_resistance.unwrap_or(usual.rolling_resistance),
             strength: borne(self.strength, usual.strength),
-            strength_criterion: match self.hydrostatic_strength {
-                Some(hydrostatic) => StrengthCriterion::DruckerPrager { hydrostatic },
-                None => usual.strength_criterion,
-            },
+            strength_criterion,
             strength_scatter: self.strength_scatter.unwrap_or(usual.strength_scatter),
             rate_toughening: match self.rate_toughening {
                 Some([speed, exponent]) => RateToughening { speed, exponent },
                 None => usual.rate_toughening,
             },
-            toughness: borne(self.toughness, usual.toughness),
+            toughness: borne(self.toughness, toughness),
             yield_strain: self.yield_strain.unwrap_or(usual.yield_strain),
             plastic_limit: self.plastic_limit.unwrap_or(usual.plastic_limit),
         }
+    }
+
+    /// Returns a material as a `[[material]]` table with all its values.
+    ///
+    /// # Errors
+    /// An error of the TOML writer.
+    pub fn table_of(material: &Material) -> Result<String, toml::ser::Error> {
+        let mut table = Self::of(material);
+        // Written inline, because a nested table would need the path of the list.
+        let law = table.stress_law.take().map(toml::Value::try_from);
+        let law = law
+            .transpose()?
+            .map_or(String::new(), |law| format!("stress_law = {law}\n"));
+        Ok(format!("[[material]]\n{}{law}", toml::to_string(&table)?))
     }
 
     /// Returns the text of a material with all its values, so that later changes of the defaults do not
@@ -386,17 +418,9 @@ impl MaterialText {
     }
 }
 
-/// Returns the reason why a name is not one of the library, with the names that begin alike, or all names.
+/// Returns the reason why a name is not one of the library, with the names that resemble it.
 fn unknown_material(name: &str) -> String {
-    let names = || library::MATERIALS.iter().map(|material| material.name);
-    let start = |name: &str| name.chars().take(3).collect::<String>();
-    let alike: Vec<&str> = names()
-        .filter(|known| start(known) == start(name))
-        .collect();
-    let list = match alike.is_empty() {
-        true => names().collect::<Vec<&str>>().join(", "),
-        false => alike.join(", "),
-    };
+    let list = library::similar_names(name).join(", ");
     let name: String = name.chars().take(40).collect();
     format!("expected a material of the library ({list}), found {name:?}")
 }

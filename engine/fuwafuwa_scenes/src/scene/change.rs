@@ -7,10 +7,19 @@ pub(super) fn replace(value: &mut toml::Value, change: &str) -> Result<(), Strin
         .split_once('=')
         .ok_or_else(|| format!("{change:?} must be field=value"))?;
     let read: toml::Table = toml::from_str(&format!("value = {new}"))
-        .map_err(|_| format!("{new:?} in {change:?} is not a value"))?;
+        .map_err(|_| format!("{new:?} in {change:?} is not a value{}", hint(path, new)))?;
     let new = &read["value"];
     let fields: Vec<&str> = path.split('.').collect();
     put(value, &fields, new).map_err(|reason| format!("{change:?}: {reason}"))
+}
+
+/// Returns how to write a text as a value; empty if `new` is none.
+fn hint(path: &str, new: &str) -> String {
+    let is_word = |letter: char| letter.is_alphanumeric() || "-_./ ".contains(letter);
+    match !new.is_empty() && new.chars().all(is_word) {
+        true => format!("; a text requires quotes: '{path}=\"{new}\"'"),
+        false => String::new(),
+    }
 }
 
 fn put(value: &mut toml::Value, fields: &[&str], new: &toml::Value) -> Result<(), String> {

@@ -86,7 +86,15 @@ impl SceneError {
 }
 
 /// Plain words for Rust types in messages of the TOML parser.
-const IN_WORDS: [(&str, &str); 6] = [
+const IN_WORDS: [(&str, &str); 8] = [
+    (
+        "invalid type: unit variant, expected newtype variant",
+        "expected a name with values, as in { yeoh = [0.01, 0.0001] }, found a name alone",
+    ),
+    (
+        "invalid type: newtype variant, expected unit variant",
+        "expected a name alone, as in \"neo_hookean\", found a name with values",
+    ),
     ("expected u8", "expected a whole number from 0 to 255"),
     ("expected u32", "expected a whole number of 0 or more"),
     ("expected usize", "expected a whole number of 0 or more"),

@@ -5,6 +5,7 @@ use fuwafuwa::{
     Dim, Dim2, Dim3, Material, PronyTerm, SoftBody, StrengthCriterion, StressLaw, Vec2, library,
 };
 use fuwafuwa_scenes::disk::open_scene;
+use fuwafuwa_scenes::scene::MaterialText;
 use fuwafuwa_scenes::{Recording, Scene, SceneError};
 use std::path::PathBuf;
 
@@ -327,4 +328,77 @@ n = 4
     };
     assert_eq!(gelatine, expected);
     assert!((gelatine.fracture_energy() - 1.1).abs() < 1e-3);
+}
+
+/// Returns the only material of a scene, or the error of the scene.
+fn material_of(fields: &str) -> Result<Material, String> {
+    let text = format!("dim = 3\n[[material]]\n{fields}\n[[body]]\nshape = \"ball\"\nn = 4\n");
+    let scene = Scene::read("toy.toml", &text, &[]).and_then(|scene| {
+        scene.build::<fuwafuwa::Dim3>()?;
+        Ok(scene)
+    });
+    scene
+        .map(|scene| scene.materials()[0])
+        .map_err(|error| error.to_string())
+}
+
+#[test]
+fn own_strength_of_material_like_another_uses_greatest_tension() {
+    let like = "like = \"polyurethane\"\n";
+    let hydrostatic = 1e6;
+    let published = StrengthCriterion::DruckerPrager { hydrostatic };
+    assert_eq!(material_of(like).unwrap().strength_criterion, published);
+    for fields in ["unbreakable = true", "strength = 4e6", "strength = 1e5"] {
+        let material = material_of(&format!("{like}{fields}")).unwrap();
+        let criterion = material.strength_criterion;
+        assert_eq!(criterion, StrengthCriterion::GreatestTension, "{fields}");
+    }
+    let both = material_of(&format!("{like}strength = 4e6\nhydrostatic_strength = 5e6")).unwrap();
+    let hydrostatic = 5e6;
+    assert_eq!(
+        both.strength_criterion,
+        StrengthCriterion::DruckerPrager { hydrostatic }
+    );
+    // A hydrostatic strength of its own must suit the strength.
+    let error = material_of(&format!("{like}strength = 4e6\nhydrostatic_strength = 1e6"));
+    assert!(error.unwrap_err().contains("hydrostatic_strength"));
+}
+
+#[test]
+fn own_modulus_of_material_like_another_keeps_the_fracture_energy() {
+    // Gelatine with 10 % has 1.1 J/m², so that K = √(G Y / (1 − ν²)).
+    let stiff = material_of("like = \"gelatine-10\"\nyoung = 73200.0\npoisson = 0.3").unwrap();
+    assert!((stiff.fracture_energy() - 1.1).abs() < 1e-5);
+    assert!(
+        (stiff.toughness - 297.462).abs() < 0.01,
+        "{}",
+        stiff.toughness
+    );
+    let given = material_of("like = \"gelatine-10\"\nyoung = 73200.0\ntoughness = 50.0").unwrap();
+    assert_eq!(given.toughness, 50.0);
+    // Materials without `like` keep the toughness of the default.
+    let plain = material_of("young = 73200.0").unwrap();
+    assert_eq!(plain.toughness, Material::default().toughness);
+    // A material without a fracture energy never has a growing crack.
+    let liver = material_of("like = \"tofu-firm\"\nyoung = 1000.0").unwrap();
+    assert_eq!(liver.toughness, f32::INFINITY);
+}
+
+#[test]
+fn stress_law_without_its_constants_is_named_in_words() {
+    let error = material_of("stress_law = \"yeoh\"").unwrap_err();
+    assert!(error.contains("as in { yeoh = [0.01, 0.0001] }"), "{error}");
+    assert!(!error.contains("variant"), "{error}");
+    let error = material_of("stress_law = { neo_hookean = 1.0 }").unwrap_err();
+    assert!(!error.contains("variant"), "{error}");
+}
+
+#[test]
+fn table_of_material_is_read_back() {
+    for record in library::MATERIALS {
+        let material = record.material();
+        let table = MaterialText::table_of(&material).unwrap();
+        let fields = table.strip_prefix("[[material]]\n").unwrap();
+        assert_eq!(material_of(fields).unwrap(), material, "{table}");
+    }
 }

@@ -331,7 +331,11 @@ fn error_names_invalid_change() {
         ),
         (
             "body.n=eight",
-            "toy.toml with body.n=eight: \"eight\" in \"body.n=eight\" is not a value",
+            "toy.toml with body.n=eight: \"eight\" in \"body.n=eight\" is not a value; a text requires quotes: 'body.n=\"eight\"'",
+        ),
+        (
+            "body.n=[4",
+            "toy.toml with body.n=[4: \"[4\" in \"body.n=[4\" is not a value",
         ),
         (
             "body.3.n=4",
