@@ -243,7 +243,7 @@ impl<'a, D: Dim> NearField<'a, D> {
     }
 }
 
-/// Returns the uniaxial tension [Pa] that counts as much as a Cauchy stress: its greatest principal value, or by the
+/// Returns the uniaxial tension [Pa] that is as critical as a Cauchy stress: its greatest principal value, or by the
 /// criterion of Drucker and Prager with the factor γ.
 pub fn equivalent_tension<D: Dim>(stress: &Rows, pressure_factor: Option<f32>) -> f32 {
     let Some(factor) = pressure_factor else {

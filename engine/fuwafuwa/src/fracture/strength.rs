@@ -3,7 +3,7 @@
 use crate::error::{Error, require};
 use crate::foundation::hash::hash_state;
 
-/// Criterion by which stress in several directions counts against the tensile strength of a material.
+/// Criterion by which a multiaxial stress starts a crack.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum StrengthCriterion {
@@ -11,9 +11,9 @@ pub enum StrengthCriterion {
     #[default]
     GreatestTension,
     /// Criterion of Drucker and Prager [Kumar 2020]: √J₂ + γ I₁ = k, with the first invariant I₁ of the stress and the
-    /// second invariant J₂ of its deviator. The constants γ and k follow from the tensile strength, which fails a bar
-    /// under tension, and the hydrostatic strength. Cracks also start inside a body, in a plane square to the
-    /// greatest tension.
+    /// second invariant J₂ of its deviator. The constants γ and k follow from the tensile strength, the stress at which a
+    /// bar under tension fails, and the hydrostatic strength. Cracks also start inside a body, in a plane perpendicular
+    /// to the greatest tension.
     DruckerPrager {
         /// Hydrostatic strength [Pa]: the tension in all directions that the material withstands; above a third of
         /// the tensile strength.
@@ -54,7 +54,7 @@ impl StrengthCriterion {
 /// Growth of the fracture energy G with the speed v of a crack or of a cutting edge: G max(1, v / v₀)^m.
 ///
 /// Below the speed v₀, the energy is that of [`Material::fracture_energy`](crate::Material::fracture_energy). A crack
-/// grows no faster than at the speed at which the material dissipates the energy that it releases.
+/// grows no faster than at the speed at which the fracture energy equals the energy release rate.
 ///
 /// ```
 /// use fuwafuwa::{Material, RateToughening};
@@ -114,7 +114,7 @@ impl RateToughening {
         }
     }
 
-    /// Returns the speed of a crack [m/s] that releases `factor` times the fracture energy at rest; infinite without
+    /// Returns the speed of a crack [m/s] at which the fracture energy is `factor` times that at rest; infinite without
     /// toughening.
     pub(crate) fn speed_at(self, factor: f32) -> f32 {
         match self.exponent > 0.0 {
