@@ -21,35 +21,40 @@ mod curve;
 
 pub use curve::parse;
 
+use curve::Curve;
+
 use crate::plot::{self, Plot, Points};
 use crate::report;
 use anyhow::{Context, Result, ensure};
 use clap::ValueEnum;
 use fuwafuwa::{Elasticity, Material, StressLaw};
-use fuwafuwa_scenes::disk;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Fit a stress law to a measured curve of uniaxial tension or compression. Prints the constants and a material for
-/// scenes.
+/// Fit a stress law to a measured curve of uniaxial tension or compression. Prints the constants with their standard errors,
+/// and a material for scenes.
+///
+/// The fit minimises the relative errors: the squares of the deviations, each divided by the stress plus 3 % of the largest
+/// stress.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// CSV file with two columns, engineering strain and engineering stress, and a header: `strain` or `stretch`, and
-    /// `stress_pa`, `stress_kpa` or `stress_mpa`. Lines that begin with # are comments.
+    /// CSV file with a header that names the engineering strain, `strain` or `stretch`, and the engineering stress,
+    /// `stress_pa`, `stress_kpa` or `stress_mpa`. Other columns are ignored. Compression has negative strains and stresses.
+    /// The lines can be in any order; stresses at equal strains are averaged. Lines that begin with # are comments.
     #[arg(value_name = "DATA.csv")]
     data: PathBuf,
-    /// Stress law.
-    #[arg(long, value_enum, default_value_t = Law::Yeoh)]
-    law: Law,
-    /// Slack of the clamps: strain at which the stress begins, subtracted from all strains. `auto` finds the slack with
-    /// the best fit.
+    /// Stress law. Default: `yeoh`, or `neo-hookean` if all strains are below 0.3, which do not determine three constants.
+    #[arg(long, value_enum)]
+    law: Option<Law>,
+    /// Slack of the clamps: strain at which the stress begins, subtracted from all strains of a tensile curve. `auto` finds
+    /// the slack with the best fit. With a slack or `auto`, points up to a strain of 0.02 after the slack are left out.
     #[arg(long, value_name = "auto|STRAIN", default_value = "0", value_parser = Slack::parse)]
     slack: Slack,
     /// Poisson's ratio of the material for scenes, 0 to 0.49. The fit itself is incompressible.
     #[arg(long, default_value_t = 0.49)]
     poisson: f64,
-    /// Draw the curve and the fit as an SVG file.
+    /// Draw the curve and the fit as an SVG file; its name must end in `.svg`.
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
     /// Print JSON instead of a table.
@@ -156,6 +161,12 @@ const MOST_SLACK: usize = 60;
 const SLACK_REACH: f64 = 1.5;
 /// Strain after the slack up to which points are left out: the specimen straightens there.
 const TOE: f64 = 0.02;
+/// Largest strain below which a curve does not determine the three constants of Yeoh.
+const LEAST_REACH: f64 = 0.3;
+/// Root mean square deviation, divided by the largest stress, above which a fit is bad.
+const BAD: f64 = 0.1;
+/// Usual shear moduli of soft materials [Pa].
+const USUAL_MODULI: [f64; 2] = [50.0, 1e9];
 
 /// Fitted stress law.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -293,8 +304,68 @@ impl Fit {
             Law::Yeoh => format!("{{ yeoh = [{:?}, {:?}] }}", self.second, self.third),
         };
         let young = self.young(poisson);
-        format!("[[material]]\nyoung = {young:?}\npoisson = {poisson:?}\nstress_law = {law}\n")
+        format!(
+            "[[material]]\nyoung = {young:?}\npoisson = {poisson:?}\nstress_law = {law}\n\
+             unbreakable = true    # or strength, as true stress, and toughness: this curve gives neither\n\
+             # density = 1000.0    # of the specimen [kg/m³]; by default 100\n"
+        )
     }
+
+    /// Returns the standard errors of μ, a and b; `None` if the points do not determine them.
+    ///
+    /// They are those of a linear fit: the limits of the constants are ignored.
+    fn standard_errors(&self, samples: &[Sample]) -> Option<[f64; 3]> {
+        let points = weighted(samples);
+        let count = match self.law {
+            Law::NeoHookean => 1,
+            Law::Yeoh => 3,
+        };
+        let most = points.iter().map(|point| point.y).fold(0.0, f64::max);
+        let is_limited = self.third < 0.0 && most > -self.second / (3.0 * self.third);
+        if points.len() <= count || most <= 0.0 || is_limited {
+            return None;
+        }
+        // Normal matrix of μ, μ a most and μ b most².
+        let (mut matrix, mut squares) = ([[0.0; 3]; 3], 0.0);
+        for (point, sample) in points.iter().zip(samples) {
+            let share = point.y / most;
+            let columns = [1.0, 2.0 * share, 3.0 * share * share];
+            let columns = columns.map(|column| point.weight * point.k * column);
+            for i in 0..3 {
+                (0..3).for_each(|j| matrix[i][j] += columns[i] * columns[j]);
+            }
+            let deviation = self.stress(sample.mode, sample.stretch) - sample.stress;
+            squares += (point.weight * deviation).powi(2);
+        }
+        let variance = squares / (points.len() - count) as f64;
+        if count == 1 {
+            return Some([(variance / matrix[0][0]).sqrt(), 0.0, 0.0]);
+        }
+        let inverse = inverse(matrix)?;
+        let relative = |place: usize, value: f64| {
+            let ratio = value * most.powi(place as i32);
+            let square = inverse[place][place] - 2.0 * ratio * inverse[0][place]
+                + ratio * ratio * inverse[0][0];
+            (variance * square.max(0.0)).sqrt() / self.shear_modulus / most.powi(place as i32)
+        };
+        Some([
+            (variance * inverse[0][0]).sqrt(),
+            relative(1, self.second),
+            relative(2, self.third),
+        ])
+    }
+}
+
+/// Returns the inverse of a symmetric matrix; `None` if it is singular.
+fn inverse(m: [[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
+    let minor = |i: usize, j: usize| {
+        let [a, b, c, d] = [(i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3];
+        m[a][c] * m[b][d] - m[a][d] * m[b][c]
+    };
+    let determinant: f64 = (0..3).map(|j| m[0][j] * minor(0, j)).sum();
+    let is_regular = determinant > 1e-12 * m[0][0] * m[1][1] * m[2][2];
+    is_regular
+        .then(|| [0, 1, 2].map(|i: usize| [0, 1, 2].map(|j: usize| minor(j, i) / determinant)))
 }
 
 /// Rounds to six significant digits, so that the constants that are printed are those that were checked.
@@ -466,11 +537,17 @@ fn steepest(place: f64) -> f64 {
     most
 }
 
-/// Returns the points of a curve of uniaxial stretches and stresses. With a slack, strains are reduced by the slack, and
-/// points up to a strain of [`TOE`] are left out.
+/// Returns the points of a curve of uniaxial stretches and stresses. With a slack above 0, strains are reduced by the slack,
+/// and points up to a strain of [`TOE`] are left out.
 pub fn after_slack(curve: &[(f64, f64)], slack: f64) -> Vec<Sample> {
+    samples_after(curve, slack, slack > 0.0)
+}
+
+/// Returns the points of a curve with strains reduced by the slack, with or without the toe: the points up to a strain of
+/// [`TOE`].
+fn samples_after(curve: &[(f64, f64)], slack: f64, is_toe_left_out: bool) -> Vec<Sample> {
     let points = { curve.iter() }.map(|&(stretch, stress)| (stretch - slack, stress));
-    let is_kept = |&(stretch, _): &(f64, f64)| slack == 0.0 || stretch > 1.0 + TOE;
+    let is_kept = |&(stretch, _): &(f64, f64)| !is_toe_left_out || stretch > 1.0 + TOE;
     points
         .filter(is_kept)
         .map(|(stretch, stress)| Sample {
@@ -499,13 +576,12 @@ pub fn find_slack(curve: &[(f64, f64)]) -> Result<f64> {
     );
     let mut best = (f64::INFINITY, 0.0);
     for step in 0..=MOST_SLACK {
-        // Almost no slack instead of none, so that all candidates leave points out.
-        let slack = (SLACK_STEP * step as f64).max(1e-9);
-        let samples = after_slack(&part, slack);
+        let slack = SLACK_STEP * step as f64;
+        let samples = samples_after(&part, slack, true);
         let fit = Fit::to(Law::Yeoh, &samples)?;
         let deviation = fit.deviations(&samples).of_largest;
         if deviation < best.0 {
-            best = (deviation, SLACK_STEP * step as f64);
+            best = (deviation, slack);
         }
     }
     Ok(best.1)
@@ -528,10 +604,15 @@ struct Outcome {
     /// Constants of the Yeoh law.
     second: f64,
     third: f64,
+    /// Standard errors of the shear modulus and of the constants of the Yeoh law; missing if the points do not determine
+    /// them.
+    standard_errors: Option<[f64; 3]>,
     /// Deviations from the points.
     deviations: Deviations,
     /// Text of the material in a scene.
     toml: String,
+    /// What looks like a mistake in the curve or in the fit.
+    notes: Vec<String>,
 }
 
 /// Fits a law to a curve and prints the result.
@@ -539,19 +620,38 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     let path = &arguments.data;
     let name = path.display().to_string();
     if let Some(plot) = &arguments.plot {
-        output::check_folder(plot).with_context(|| plot.display().to_string())?;
+        check_plot(plot, path)?;
     }
     let poisson = arguments.poisson;
     Elasticity::new(1.0, poisson).context("--poisson")?;
-    let text = disk::read_text(path, 1 << 24).with_context(|| name.clone())?;
-    let curve = parse(&name, &text)?;
+    let text = curve::read_text(path, 1 << 24)?;
+    let Curve { points, mut notes } = Curve::parse(&name, &text)?;
+    if arguments.slack != Slack::Given(0.0) {
+        let lowest = points
+            .iter()
+            .map(|(stretch, _)| stretch - 1.0)
+            .fold(0.0, f64::min);
+        ensure!(
+            lowest > -TOE,
+            "{name}: --slack is for tensile curves: expected strains above {}, found {lowest}",
+            -TOE
+        );
+    }
     let slack = match arguments.slack {
         Slack::Given(slack) => slack,
-        Slack::Auto => find_slack(&curve).with_context(|| name.clone())?,
+        Slack::Auto => find_slack(&points).with_context(|| name.clone())?,
     };
-    let samples = after_slack(&curve, slack);
-    let fit = Fit::to(arguments.law, &samples).with_context(|| name.clone())?;
-    let outcome = outcome(&fit, &samples, slack, poisson);
+    let samples = samples_after(&points, slack, arguments.slack != Slack::Given(0.0));
+    let law = arguments.law.unwrap_or_else(|| usual_law(&samples));
+    let fit = Fit::to(law, &samples).with_context(|| name.clone())?;
+    notes.extend(doubts(&fit, &samples, arguments.law.is_some()));
+    notes
+        .iter()
+        .for_each(|note| output::warn(format_args!("note: {note}")));
+    let outcome = Outcome {
+        notes,
+        ..outcome(&fit, &samples, slack, poisson)
+    };
     if let Some(plot) = &arguments.plot {
         let svg = plot::svg_of_plots(&[picture(&fit, &samples)]);
         output::write(plot, svg.as_bytes()).with_context(|| plot.display().to_string())?;
@@ -562,6 +662,79 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         output::print(&format!("{}\n{}", table(&outcome), outcome.toml))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Checks that a plot is written to an SVG file other than the data.
+fn check_plot(plot: &Path, data: &Path) -> Result<()> {
+    let name = plot.display();
+    let is_svg = plot
+        .extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case("svg"));
+    ensure!(
+        is_svg,
+        "--plot: expected a name that ends in .svg, found {name}"
+    );
+    output::check_folder(plot).with_context(|| name.to_string())?;
+    // A plot that does not exist yet is no file with data.
+    let is_data = match (plot.canonicalize(), data.canonicalize()) {
+        (Ok(plot), Ok(data)) => plot == data,
+        _ => false,
+    };
+    ensure!(
+        !is_data,
+        "--plot: expected another file than the data, found {name}"
+    );
+    Ok(())
+}
+
+/// Returns the largest strain of points, in tension or in compression.
+fn reach(samples: &[Sample]) -> f64 {
+    let strains = samples.iter().map(|one| (one.stretch - 1.0).abs());
+    strains.fold(0.0, f64::max)
+}
+
+/// Returns the law whose constants the points can determine.
+fn usual_law(samples: &[Sample]) -> Law {
+    match reach(samples) < LEAST_REACH {
+        true => Law::NeoHookean,
+        false => Law::Yeoh,
+    }
+}
+
+/// Returns what looks like a mistake in a fit.
+fn doubts(fit: &Fit, samples: &[Sample], is_law_given: bool) -> Vec<String> {
+    let digits = report::digits;
+    let mut doubts = Vec::new();
+    let deviation = fit.deviations(samples).of_largest;
+    if deviation > BAD {
+        doubts.push(format!(
+            "the law does not follow the curve: the rms error is {} % of the largest stress; does the file have points after \
+             the break, or two curves?",
+            digits(100.0 * deviation)
+        ));
+    }
+    let reach = reach(samples);
+    if reach < LEAST_REACH {
+        let largest = format!(
+            "the largest strain is {}, below {LEAST_REACH}",
+            digits(reach)
+        );
+        match (fit.law, is_law_given) {
+            (Law::Yeoh, _) => doubts.push(format!(
+                "{largest}: it does not determine the constants of Yeoh; try --law neo-hookean"
+            )),
+            (Law::NeoHookean, false) => doubts.push(format!("{largest}: neo-Hookean law")),
+            (Law::NeoHookean, true) => {}
+        }
+    }
+    let [low, high] = USUAL_MODULI;
+    if !(low..=high).contains(&fit.shear_modulus) {
+        doubts.push(format!(
+            "the shear modulus is {} Pa, soft materials have {low} to {high:e} Pa: is the unit of the stress right?",
+            digits(fit.shear_modulus)
+        ));
+    }
+    doubts
 }
 
 fn outcome(fit: &Fit, samples: &[Sample], slack: f64, poisson: f64) -> Outcome {
@@ -579,8 +752,10 @@ fn outcome(fit: &Fit, samples: &[Sample], slack: f64, poisson: f64) -> Outcome {
         poisson,
         second: fit.second,
         third: fit.third,
+        standard_errors: fit.standard_errors(samples),
         deviations: fit.deviations(samples),
         toml: fit.toml(poisson),
+        notes: Vec::new(),
     }
 }
 
@@ -588,16 +763,29 @@ fn table(outcome: &Outcome) -> String {
     let digits = report::digits;
     let percent = |share: f64| format!("{} %", digits(100.0 * share));
     let [low, high] = outcome.strain.map(digits);
+    let with_error = |value: f64, place: usize| {
+        let error = outcome.standard_errors.map(|errors| errors[place]);
+        let error = error.map_or(String::new(), |error| format!(" ± {}", digits(error)));
+        digits(value) + &error
+    };
+    let law = match outcome.law {
+        Law::NeoHookean => "neo-Hookean",
+        Law::Yeoh => "Yeoh",
+    };
     let mut rows = vec![
+        ("law", law.into()),
         ("points", outcome.points.to_string()),
         ("strain", format!("{low} to {high}")),
         ("slack", digits(outcome.slack)),
-        ("shear modulus [Pa]", digits(outcome.shear_modulus)),
-        ("Young's modulus [Pa]", digits(outcome.young)),
+        ("shear modulus [Pa]", with_error(outcome.shear_modulus, 0)),
+        (
+            "Young's modulus [Pa], from --poisson",
+            digits(outcome.young),
+        ),
     ];
     if outcome.law == Law::Yeoh {
-        rows.push(("second, C₂ / C₁", digits(outcome.second)));
-        rows.push(("third, C₃ / C₁", digits(outcome.third)));
+        rows.push(("second, C₂ / C₁", with_error(outcome.second, 1)));
+        rows.push(("third, C₃ / C₁", with_error(outcome.third, 2)));
     }
     let Deviations {
         of_largest,

@@ -4,13 +4,15 @@ use crate::report;
 use anyhow::{Context, Result};
 use fuwafuwa::library::{self, LibraryMaterial, LibraryValue, MATERIALS, Quantity};
 use fuwafuwa::{Material, StressLaw};
+use fuwafuwa_scenes::scene::MaterialText;
 use std::process::ExitCode;
 
 /// List the materials of the library.
 #[derive(Debug, clap::Args)]
 pub struct List {}
 
-/// Show a material of the library: each number with its source, and what takes the place of missing numbers.
+/// Show a material of the library: each number with its source, what takes the place of missing numbers, and the material
+/// for scenes.
 #[derive(Debug, clap::Args)]
 pub struct Show {
     /// Name of the material, see `fuwafuwa material list`.
@@ -38,9 +40,10 @@ pub fn list() -> Result<ExitCode> {
 pub fn show(arguments: &Show) -> Result<ExitCode> {
     let name = &arguments.name;
     let record = library::find(name).with_context(|| {
-        format!("no material {name:?}: `fuwafuwa material list` shows the names")
+        let similar = library::similar_names(name).join(", ");
+        format!("expected a material of the library ({similar}), found {name:?}")
     })?;
-    output::print(&text(record))?;
+    output::print(&text(record)?)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -53,7 +56,7 @@ fn law(material: &Material) -> &'static str {
 }
 
 /// Returns the description of a material.
-fn text(record: &LibraryMaterial) -> String {
+fn text(record: &LibraryMaterial) -> Result<String> {
     let head = ["quantity", "value", "spread", "°C", "1/s", "source"];
     let mut rows = vec![head.map(String::from).to_vec()];
     rows.extend(record.values.iter().map(row));
@@ -62,23 +65,71 @@ fn text(record: &LibraryMaterial) -> String {
         .into_iter()
         .filter(|&quantity| record.is_missing(quantity));
     let missing: Vec<&str> = missing.map(Quantity::key).collect();
+    let missing = match missing.is_empty() {
+        true => "nothing".into(),
+        false => missing.join(", "),
+    };
     let used = record.material();
-    format!(
-        "{}: {}\n\n{table}\nNot published: {}.\nThe simulation uses: density {} kg/m³, Poisson's ratio {}, law {}, strength {} Pa, \
-         fracture energy {} J/m².\n",
+    let notes: String = { notes(record, &used).into_iter() }
+        .map(|note| format!("{note}\n"))
+        .collect();
+    Ok(format!(
+        "{}: {}\n\n{table}\nNot in the library: {missing}.\nThe simulation uses: density {} kg/m³, Poisson's ratio {}, law {}, \
+         strength {} Pa, fracture energy {} J/m². Other properties: defaults of Material, without damping.\n{notes}\n\
+         # For scenes; the same as like = {:?}.\n{}",
         record.name,
         record.about,
-        if missing.is_empty() {
-            "nothing".into()
-        } else {
-            missing.join(", ")
-        },
         used.density,
         used.elasticity.poisson,
         law(&used),
         limit(used.strength),
         limit(used.fracture_energy()),
-    )
+        record.name,
+        MaterialText::table_of(&used)?,
+    ))
+}
+
+/// Returns what to know before use: strains of the fit, break under tension, and whether the material can tear.
+fn notes(record: &LibraryMaterial, used: &Material) -> Vec<String> {
+    let digits = report::digits;
+    let mut notes = Vec::new();
+    let fitted = record.fitted_strain();
+    if let Some([low, high]) = fitted {
+        let [shortest, longest] = [1.0 + low, 1.0 + high].map(digits);
+        notes.push(format!(
+            "The law was fitted at stretches of {shortest} to {longest}; beyond them it is extrapolated."
+        ));
+    } else if record.value(Quantity::ShearModulus).is_some()
+        || record.value(Quantity::Young).is_some()
+    {
+        notes
+            .push("The law was not fitted to a curve: the modulus holds for small strains.".into());
+    }
+    if let Some(state) = record.tensile_break() {
+        let published = record.value(Quantity::StrainAtBreak);
+        let published = published.map_or(String::new(), |value| {
+            format!(" (published: {})", digits(value.value[0]))
+        });
+        let strain = state.stretch - 1.0;
+        let is_beyond = fitted.is_none_or(|[_, high]| strain > high);
+        notes.push(format!(
+            "A bar reaches the published nominal strength at a strain of {}{published}, with the true stress that the \
+             simulation uses{}.",
+            digits(strain),
+            match is_beyond {
+                true => "; the strain is extrapolated",
+                false => "",
+            },
+        ));
+    }
+    let cannot = match (used.strength.is_finite(), used.toughness.is_finite()) {
+        (true, true) => return notes,
+        (false, false) => "without strength and fracture energy, it cannot tear",
+        (false, true) => "without a strength, no crack starts: only cuts and given cracks grow",
+        (true, false) => "without a fracture energy, cracks do not grow",
+    };
+    notes.push(format!("The simulated material: {cannot}."));
+    notes
 }
 
 /// Formats a number that is infinite if the material does not tear.
@@ -117,17 +168,58 @@ fn row(value: &LibraryValue) -> Vec<String> {
 mod tests {
     use super::*;
 
+    fn text_of(name: &str) -> String {
+        text(library::find(name).unwrap()).unwrap()
+    }
+
     #[test]
     fn description_names_sources_and_missing_numbers() {
-        let gelatine = text(library::find("gelatine-10").unwrap());
-        assert!(gelatine.contains("Forte and others 2015"), "{gelatine}");
-        assert!(
-            gelatine.contains("Not published: density, poisson, yeoh, strength"),
-            "{gelatine}"
-        );
-        assert!(
-            gelatine.contains("strength infinite Pa, fracture energy 1.1 J/m²"),
-            "{gelatine}"
-        );
+        let gelatine = text_of("gelatine-10");
+        for part in [
+            "Forte and others 2015",
+            "Not in the library: density, poisson, yeoh, strength",
+            "strength infinite Pa, fracture energy 1.1 J/m²",
+            "without a strength, no crack starts",
+            "the modulus holds for small strains",
+        ] {
+            assert!(gelatine.contains(part), "{gelatine}");
+        }
+        assert!(!gelatine.contains("cannot tear"), "{gelatine}");
+        assert!(text_of("liver").contains("without a strength, no crack starts"));
+        assert!(text_of("tofu-firm").contains("it cannot tear"));
+        assert!(text_of("ecoflex-00-30").contains("without a fracture energy, cracks do not grow"));
+        assert!(!text_of("polyurethane").contains("The simulated material"));
+    }
+
+    #[test]
+    fn description_names_strains_of_the_fit_and_of_the_break() {
+        let dragon_skin = text_of("dragon-skin-10");
+        for part in [
+            "fitted at stretches of 1.06 to 3.99; beyond them it is extrapolated",
+            "at a strain of 14.62 (published: 10)",
+            "the strain is extrapolated",
+        ] {
+            assert!(dragon_skin.contains(part), "{dragon_skin}");
+        }
+    }
+
+    #[test]
+    fn description_has_the_material_for_scenes() {
+        for record in MATERIALS {
+            let text = text(record).unwrap();
+            let (_, table) = text.split_once("\n[[material]]\n").unwrap();
+            let scene =
+                format!("dim = 3\n[[material]]\n{table}\n[[body]]\nshape = \"ball\"\nn = 4\n");
+            let scene = fuwafuwa_scenes::Scene::read("a.toml", &scene, &[]).unwrap();
+            assert_eq!(scene.materials(), [record.material()], "{table}");
+        }
+    }
+
+    #[test]
+    fn unknown_material_is_answered_with_similar_names() {
+        let name = "rubber".into();
+        let error = show(&Show { name }).unwrap_err().to_string();
+        let expected = "expected a material of the library (natural-rubber), found \"rubber\"";
+        assert_eq!(error, expected);
     }
 }
