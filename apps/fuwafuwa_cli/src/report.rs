@@ -82,6 +82,21 @@ pub struct Outcome {
     pub high: Option<f64>,
     /// Whether the value meets the requirement; `None` if it is shown for comparison only.
     pub pass: Option<bool>,
+    /// Part of the outcome in the summary of a report.
+    #[serde(skip)]
+    pub standing: Standing,
+}
+
+/// Part of an outcome in the summary of a report.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum Standing {
+    /// The outcome tests the engine.
+    #[default]
+    Test,
+    /// Constants are fitted to the reference.
+    Calibration,
+    /// The value is known to lie outside of its bound, which does not fail the run.
+    KnownMiss,
 }
 
 impl Outcome {
@@ -135,15 +150,25 @@ impl Outcome {
             low: None,
             high: None,
             pass: None,
+            standing: Standing::Test,
         }
     }
 
-    /// Returns the deviation from the reference, or from the middle of the allowed range, in units of the bound:
-    /// from −1 to 1 if the value meets its requirement. With a limit on one side only, a passing value has a
-    /// deviation from 0 to 1. `None` if there is no bound.
+    /// Returns the deviation from the reference in units of the bound: from −1 to 1 if the value meets its requirement.
+    /// Without a reference in the allowed range, the deviation is that from the middle of the range. With a limit on one
+    /// side only, a passing value has a deviation from 0 to 1. `None` if there is no bound.
     pub fn deviation(&self) -> Option<f64> {
         let deviation = match (self.low, self.high) {
-            (Some(low), Some(high)) => 2.0 * (self.value - 0.5 * (low + high)) / (high - low),
+            (Some(low), Some(high)) => {
+                let middle = 0.5 * (low + high);
+                let inside = |reference: &f64| (low..=high).contains(reference);
+                let zero = self.reference.filter(inside).unwrap_or(middle);
+                let side = match self.value > zero && high > zero || zero == low {
+                    true => high - zero,
+                    false => zero - low,
+                };
+                (self.value - zero) / side
+            }
             (None, Some(high)) => (self.value / high).max(0.0),
             (Some(low), None) => low / self.value,
             (None, None) => return None,

@@ -4,13 +4,16 @@
 //! digits. Standard libraries with another sine or exponential function may change the last digit of a reference.
 
 use crate::plot::{svg_of_deviations, svg_of_plots};
-use crate::report::{Findings, Outcome, digits};
-use anyhow::{Context, Result};
+use crate::report::{Findings, Outcome, Standing, digits};
+use anyhow::{Context, Result, ensure};
+use clap::ValueEnum;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Share of a bound below which deviations from 0 are reported as an upper limit: they are rounding errors.
 const NOTHING: f64 = 1e-3;
+/// Relative difference that rounding may cause.
+const ROUNDING: f64 = 1e-9;
 
 /// Findings of a check with its description.
 #[derive(Clone, Debug)]
@@ -19,8 +22,92 @@ pub struct Section {
     pub name: String,
     /// Description of the check, with the source of its reference.
     pub about: String,
+    /// Kinds of its references; `None` if the report does not list them.
+    pub sources: Option<String>,
     /// Results of the check.
     pub findings: Findings,
+}
+
+/// Names of checks on the command line, with names for several of them.
+pub trait Suite: ValueEnum + PartialEq + 'static {
+    /// Name for all checks.
+    const ALL: Self;
+    /// Name for the checks that take some seconds each.
+    const QUICK: Self;
+    /// Checks that [`Suite::QUICK`] leaves out.
+    const LONG: &'static [Self];
+
+    /// Returns whether the choice of this name includes a check.
+    fn includes(&self, check: &Self) -> bool {
+        match self {
+            choice if *choice == Self::ALL => true,
+            choice if *choice == Self::QUICK => !Self::LONG.contains(check),
+            choice => choice == check,
+        }
+    }
+
+    /// Returns the name on the command line.
+    fn name(&self) -> String {
+        let value = self.to_possible_value();
+        value.map_or(String::new(), |value| value.get_name().to_owned())
+    }
+
+    /// Returns the description on the command line.
+    fn about(&self) -> String {
+        let value = self.to_possible_value();
+        let about = value.as_ref().and_then(|value| value.get_help());
+        // The command line strips the full stop at the end.
+        about.map_or(String::new(), |about| format!("{about}."))
+    }
+
+    /// Returns the section of the report for a check, without the kinds of its references.
+    fn section(&self, findings: Findings) -> Section {
+        Section {
+            name: self.name(),
+            about: self.about(),
+            sources: None,
+            findings,
+        }
+    }
+
+    /// Checks before a run that its report can be written, or that the report to compare with exists.
+    ///
+    /// # Errors
+    /// If only a part of the report would be written, or the path of the file at fault and the error of the system.
+    fn check_report(&self, path: &Path, page: &Page, compare: bool) -> Result<()> {
+        if compare {
+            fs::metadata(path).with_context(|| path.display().to_string())?;
+            return Ok(());
+        }
+        let Page { command, kind, .. } = page;
+        ensure!(
+            *self == Self::ALL,
+            "writing a report needs `{command} all`: it has a section for each {kind}. With --compare, any {kind} is \
+             possible"
+        );
+        check_output(path)?;
+        check_output(&path.with_extension("").join("picture.svg"))
+    }
+}
+
+/// Checks that a file can be written, and creates its folder. An existing file is unchanged.
+///
+/// # Errors
+/// The path of the file and the error of the system.
+pub fn check_output(path: &Path) -> Result<()> {
+    create_folder(path)?;
+    // The draft is dropped without a trace.
+    output::Draft::begin(path).with_context(|| path.display().to_string())?;
+    Ok(())
+}
+
+/// Creates the folder of a file if it is missing.
+fn create_folder(path: &Path) -> Result<()> {
+    let folder = path.parent();
+    if let Some(folder) = folder.filter(|folder| !folder.as_os_str().is_empty()) {
+        fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    }
+    Ok(())
 }
 
 /// File of a report.
@@ -41,6 +128,10 @@ pub struct Page {
     pub about: &'static str,
     /// Word for a section.
     pub kind: &'static str,
+    /// Heading of the column with the values of the engine.
+    pub value: &'static str,
+    /// Command that writes the report.
+    pub command: &'static str,
 }
 
 /// Writes a report whose Markdown file has the given path, or compares it with the files on the disk and prints the
@@ -89,12 +180,7 @@ pub fn write(files: &[ReportFile]) -> Result<()> {
         if fs::read(path).is_ok_and(|found| found == text.as_bytes()) {
             continue;
         }
-        if let Some(folder) = path
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty())
-        {
-            fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-        }
+        create_folder(path)?;
         output::write(path, text.as_bytes()).with_context(|| path.display().to_string())?;
     }
     Ok(())
@@ -169,18 +255,48 @@ fn sections_of(text: &str) -> Vec<(&str, Vec<&str>)> {
 }
 
 fn markdown(folder: &str, page: &Page, sections: &[Section]) -> String {
-    let Page { title, about, kind } = page;
-    let mut text = format!(
-        "# {title}\n\n{about}\n\n\
-         | {kind} | values | passed | for comparison |\n| --- | --- | --- | --- |\n",
-    );
+    let Page {
+        title,
+        about,
+        value,
+        ..
+    } = page;
+    let summary = match sections.iter().any(|section| section.sources.is_some()) {
+        true => format!(
+            "{}\n\n{}",
+            misses(sections),
+            sourced_summary(page, sections)
+        ),
+        false => summary(page, sections),
+    };
+    let mut text = format!("# {title}\n\n{about}\n\n{summary}");
+    for section in sections {
+        let Section {
+            name,
+            about,
+            findings,
+            ..
+        } = section;
+        text += &format!("\n## {name}\n\n{about}\n\n![{name}]({folder}/{name}.svg)\n\n",);
+        text += &format!(
+            "| # | case | {value} | reference | bound | passed |\n| --- | --- | --- | --- | --- | --- |\n"
+        );
+        for (index, outcome) in findings.outcomes.iter().enumerate() {
+            text += &row(index + 1, outcome);
+        }
+    }
+    text
+}
+
+/// Returns the table of the sections with the numbers of their outcomes.
+fn summary(page: &Page, sections: &[Section]) -> String {
+    let kind = page.kind;
+    let mut text =
+        format!("| {kind} | values | passed | for comparison |\n| --- | --- | --- | --- |\n");
     for Section { name, findings, .. } in sections {
         let count = |pass| {
-            findings
-                .outcomes
-                .iter()
-                .filter(|outcome| outcome.pass == pass)
-                .count()
+            let outcomes = findings.outcomes.iter();
+            outcomes.filter(|outcome| outcome.pass == pass).count()
         };
         let (passed, failed, shown) = (count(Some(true)), count(Some(false)), count(None));
         text += &format!(
@@ -189,28 +305,80 @@ fn markdown(folder: &str, page: &Page, sections: &[Section]) -> String {
             passed + failed
         );
     }
-    for section in sections {
-        let Section {
-            name,
-            about,
-            findings,
-        } = section;
-        text += &format!("\n## {name}\n\n{about}\n\n![{name}]({folder}/{name}.svg)\n\n",);
-        text += "| # | case | measured | reference | bound | passed |\n| --- | --- | --- | --- | --- | --- |\n";
-        for (index, outcome) in findings.outcomes.iter().enumerate() {
-            text += &row(index + 1, outcome);
+    text
+}
+
+/// As [`summary`], with the kinds of the references. Calibrations do not count as passed, and known misses count as not
+/// passed.
+fn sourced_summary(page: &Page, sections: &[Section]) -> String {
+    let kind = page.kind;
+    let mut text = format!(
+        "| {kind} | reference | passed | calibrations | without a bound, largest deviation |\n\
+         | --- | --- | --- | --- | --- |\n"
+    );
+    for Section {
+        name,
+        sources,
+        findings,
+        ..
+    } in sections
+    {
+        let [mut tests, mut passed, mut calibrations] = [0; 3];
+        let mut shown = Vec::new();
+        for outcome in &findings.outcomes {
+            match (outcome.standing, outcome.pass) {
+                (Standing::Calibration, _) => calibrations += 1,
+                (Standing::Test, None) => shown.push(outcome),
+                (Standing::Test | Standing::KnownMiss, pass) => {
+                    tests += 1;
+                    passed += usize::from(pass == Some(true));
+                }
+            }
         }
+        let deviations = shown.iter().filter_map(|outcome| {
+            let reference = outcome.reference.filter(|reference| *reference != 0.0)?;
+            Some((outcome.value / reference - 1.0).abs())
+        });
+        let largest = deviations.reduce(f64::max);
+        let largest = largest.map_or(String::new(), |largest| {
+            format!(", {:.0} %", 100.0 * largest)
+        });
+        text += &format!(
+            "| [{name}](#{name}) | {} | {passed} of {tests} | {calibrations} | {}{largest} |\n",
+            sources.as_deref().unwrap_or("–"),
+            shown.len()
+        );
     }
     text
+}
+
+/// Returns the sentence with the rows that lie outside of their bound.
+fn misses(sections: &[Section]) -> String {
+    let rows = sections
+        .iter()
+        .filter_map(|Section { name, findings, .. }| {
+            let outcomes = findings.outcomes.iter().enumerate();
+            let missed = outcomes.filter(|(_, outcome)| {
+                outcome.pass == Some(false) || outcome.standing == Standing::KnownMiss
+            });
+            let numbers: Vec<String> = missed.map(|(index, _)| (index + 1).to_string()).collect();
+            (!numbers.is_empty()).then(|| format!("[{name}](#{name}) {}", numbers.join(", ")))
+        });
+    let rows: Vec<String> = rows.collect();
+    match rows.is_empty() {
+        true => "No row lies outside of its bound.".into(),
+        false => format!("Rows outside of their bound: {}.", rows.join("; ")),
+    }
 }
 
 /// Returns the row of an outcome in the table of its check.
 fn row(number: usize, outcome: &Outcome) -> String {
     let reference = outcome.reference.map_or("–".into(), digits);
-    let passed = match outcome.pass {
-        Some(true) => "yes",
-        Some(false) => "**no**",
-        None => "*for comparison*",
+    let passed = match (outcome.pass, outcome.standing) {
+        (Some(true), _) => "yes",
+        (Some(false), _) => "**no**",
+        (None, Standing::KnownMiss) => "**no**, known",
+        (None, _) => "*for comparison*",
     };
     format!(
         "| {number} | {} | {} | {reference} | {} | {passed} |\n",
@@ -234,10 +402,13 @@ fn measured(outcome: &Outcome) -> String {
     }
 }
 
-/// Formats the bound of an outcome.
+/// Formats the bound of an outcome: as a deviation if the reference is in the middle of the allowed range.
 fn bound(outcome: &Outcome) -> String {
+    let is_middle = |reference: f64, low: f64, high: f64| {
+        (0.5 * (low + high) - reference).abs() <= ROUNDING * (high - low).max(reference.abs())
+    };
     match (outcome.reference, outcome.low, outcome.high) {
-        (Some(reference), Some(low), Some(high)) => {
+        (Some(reference), Some(low), Some(high)) if is_middle(reference, low, high) => {
             let half = 0.5 * (high - low);
             let share = digits(100.0 * half / reference.abs());
             match reference == 0.0 || half == 0.0 {
@@ -267,6 +438,8 @@ mod tests {
         title: "Validation",
         about: "Checks.",
         kind: "check",
+        value: "measured",
+        command: "check",
     };
 
     fn section(name: &str, value: f64) -> Section {
@@ -274,6 +447,7 @@ mod tests {
         Section {
             name: name.into(),
             about: "Products must be right.".into(),
+            sources: None,
             findings: vec![outcome].into(),
         }
     }
@@ -294,6 +468,84 @@ mod tests {
             found[0].contains("measured \"| 1 | twice two | 4.02 |"),
             "{found:?}"
         );
+    }
+
+    #[test]
+    fn bound_is_a_range_unless_the_reference_is_in_its_middle() {
+        let of = |reference, low, high| {
+            let outcome = Outcome::within("speed".into(), 0.46, low..=high);
+            bound(&Outcome {
+                reference: Some(reference),
+                ..outcome
+            })
+        };
+        assert_eq!(of(1.0, 0.9, 1.1), "± 10 %");
+        assert_eq!(of(0.0, -0.1, 0.1), "± 0.1");
+        assert_eq!(of(1.0, 0.0, 1.0), "0 to 1");
+        assert_eq!(of(0.0, 0.0, 0.5), "0 to 0.5");
+        assert_eq!(of(1.0, f64::NEG_INFINITY, 1.0), "≤ 1");
+    }
+
+    #[test]
+    fn deviation_is_that_from_the_reference() {
+        let of = |value, reference, low, high| {
+            let outcome = Outcome::within("speed".into(), value, low..=high);
+            let outcome = Outcome {
+                reference: Some(reference),
+                ..outcome
+            };
+            outcome.deviation().unwrap()
+        };
+        assert!((of(0.05, 0.0, 0.0, 0.5) - 0.1).abs() < 1e-12);
+        assert!((of(0.4, 1.0, 0.0, 1.0) + 0.6).abs() < 1e-12);
+        assert!((of(1.2, 1.0, 0.0, 1.0) - 0.2).abs() < 1e-12);
+        assert!((of(-0.2, 0.0, 0.0, 0.5) + 0.4).abs() < 1e-12);
+        assert!((of(53.0, 45.0, 35.0, 55.0) - 0.8).abs() < 1e-12);
+    }
+
+    #[test]
+    fn summary_counts_neither_calibrations_nor_known_misses_as_passed() {
+        let outcome = |standing, pass| Outcome {
+            standing,
+            pass,
+            ..Outcome::near("speed".into(), 1.5, 1.0, 1.0)
+        };
+        let section = Section {
+            sources: Some("laboratory".into()),
+            findings: vec![
+                outcome(Standing::Calibration, Some(true)),
+                outcome(Standing::Test, Some(true)),
+                outcome(Standing::KnownMiss, None),
+                outcome(Standing::Test, Some(false)),
+                outcome(Standing::Test, None),
+            ]
+            .into(),
+            ..section("swing", 4.0)
+        };
+        let text = markdown("report", &PAGE, &[section]);
+        assert!(
+            text.contains("| laboratory | 1 of 3 | 1 | 1, 50 % |"),
+            "{text}"
+        );
+        assert!(
+            text.contains("of their bound: [swing](#swing) 3, 4."),
+            "{text}"
+        );
+        assert!(text.contains("**no**, known"), "{text}");
+    }
+
+    #[test]
+    fn output_that_cannot_be_written_is_refused_before_the_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("new").join("report.md");
+        check_output(&path).unwrap();
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 0);
+        let file = folder.path().join("file");
+        fs::write(&file, "text").unwrap();
+        let error = check_output(&file.join("report.md")).unwrap_err();
+        assert!(error.to_string().contains("file"), "{error}");
+        check_output(&file).unwrap();
+        assert_eq!(fs::read(&file).unwrap(), b"text");
     }
 
     #[test]

@@ -7,7 +7,7 @@ mod crack_path;
 mod damping;
 mod doughnut;
 pub mod elastica;
-pub mod energy;
+mod energy;
 mod far;
 mod free_fall;
 pub mod greenhill;
@@ -24,8 +24,8 @@ mod patch;
 mod path;
 mod period;
 mod pile;
-pub mod plate;
-pub mod random;
+mod plate;
+mod random;
 mod reaction;
 pub mod ring;
 mod sag;
@@ -41,8 +41,8 @@ mod tear;
 pub mod turek_hron;
 
 use crate::report::{self, Findings, Outcome, Progress};
-use crate::validation::{self, Page, Section};
-use anyhow::{Context, Result, ensure};
+use crate::validation::{self, Page, Suite};
+use anyhow::Result;
 use clap::ValueEnum;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -174,23 +174,27 @@ enum Extent {
     Full,
 }
 
-/// Checks that take more than some five seconds on two cores, which [`Which::Quick`] leaves out.
-const LONG: [Which; 14] = [
-    Which::Beam,
-    Which::Sag,
-    Which::Period,
-    Which::Tear,
-    Which::Pile,
-    Which::Heap,
-    Which::Sphere,
-    Which::FreeFall,
-    Which::Impact,
-    Which::Scale,
-    Which::Ring,
-    Which::Lefm,
-    Which::Path,
-    Which::Grid,
-];
+impl Suite for Which {
+    const ALL: Self = Self::All;
+    const QUICK: Self = Self::Quick;
+    // Checks that take more than some five seconds on two cores.
+    const LONG: &'static [Self] = &[
+        Self::Beam,
+        Self::Sag,
+        Self::Period,
+        Self::Tear,
+        Self::Pile,
+        Self::Heap,
+        Self::Sphere,
+        Self::FreeFall,
+        Self::Impact,
+        Self::Scale,
+        Self::Ring,
+        Self::Lefm,
+        Self::Path,
+        Self::Grid,
+    ];
+}
 
 /// Introduction of the report.
 const PAGE: Page = Page {
@@ -201,6 +205,8 @@ const PAGE: Page = Page {
             Pictures show measured points upon the curve of the reference. Where there is no curve, they show the deviation\n\
             from the reference in units of its bound: all points must lie in the green band.",
     kind: "check",
+    value: "measured",
+    command: "check",
 };
 
 type Check = fn(&Progress, Extent) -> Result<Findings>;
@@ -247,14 +253,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
     };
     let checks: Vec<(Which, Check)> = CHECKS
         .into_iter()
-        .filter(|(which, _)| arguments.which.contains(*which))
+        .filter(|(which, _)| arguments.which.includes(which))
         .collect();
     if let Some(path) = &arguments.report {
-        ensure!(
-            arguments.which == Which::All || arguments.compare,
-            "writing a report needs `check all`: it has a section for each check. With --compare, any check is possible"
-        );
-        output::check_folder(path).with_context(|| path.display().to_string())?;
+        arguments
+            .which
+            .check_report(path, &PAGE, arguments.compare)?;
     }
     let progress = Progress::new();
     let mut sections = Vec::new();
@@ -283,31 +287,6 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode> {
         failed |= validation::report(path, &PAGE, &sections, is_complete, arguments.compare)?;
     }
     Ok(ExitCode::from(u8::from(failed)))
-}
-
-impl Which {
-    /// Returns whether the choice of this check includes a check.
-    fn contains(self, check: Self) -> bool {
-        match self {
-            Self::All => true,
-            Self::Quick => !LONG.contains(&check),
-            _ => self == check,
-        }
-    }
-
-    /// Returns the section of the report for this check.
-    fn section(self, findings: Findings) -> Section {
-        let value = self.to_possible_value();
-        let about = value.as_ref().and_then(|value| value.get_help());
-        Section {
-            name: value
-                .as_ref()
-                .map_or(String::new(), |value| value.get_name().to_owned()),
-            // The command line strips the full stop at the end.
-            about: about.map_or(String::new(), |about| format!("{about}.")),
-            findings,
-        }
-    }
 }
 
 /// Runs `work` for each of `count` checks on all threads. `done` receives the index and the result of each check in the

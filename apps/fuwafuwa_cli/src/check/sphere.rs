@@ -51,17 +51,17 @@ struct Case {
     balls: usize,
     /// Whether the lattices of the balls are turned, each in its own way.
     turned: bool,
-    /// Whether the balls know their surface ([`VoxelGrid::ball`]) or have the smoothed surface of the same voxels.
-    known: bool,
+    /// Whether the balls have their exact surface ([`VoxelGrid::ball`]) or the smoothed surface of the same voxels.
+    is_exact: bool,
 }
 
 impl Case {
-    fn new(n: usize, balls: usize, turned: bool, known: bool) -> Self {
+    fn new(n: usize, balls: usize, turned: bool, is_exact: bool) -> Self {
         Self {
             n,
             balls,
             turned,
-            known,
+            is_exact,
         }
     }
 
@@ -69,7 +69,7 @@ impl Case {
     /// surfaces, where the position of the pole is uncertain by half a voxel; and for two balls, whose contact spheres
     /// lie on the staircase of voxels.
     fn tolerance(self, depth: f32) -> Option<f64> {
-        match (self.known && self.balls == 1, self.n >= 32) {
+        match (self.is_exact && self.balls == 1, self.n >= 32) {
             (true, true) => Some(if depth < 0.015 { 0.17 } else { 0.1 }),
             (true, false) if depth > 0.035 => Some(0.14),
             _ => None,
@@ -98,15 +98,18 @@ pub fn check(progress: &Progress) -> Result<Findings> {
     for (case, forces) in cases.iter().zip(found) {
         let contact = if case.balls == 1 { "plate" } else { "ball" };
         let lattice = if case.turned { "turned" } else { "aligned" };
-        let surface = if case.known { "known" } else { "smoothed" };
-        if case.known && case.balls == 1 {
+        let surface = match case.is_exact {
+            true => "its exact surface",
+            false => "smoothed voxels",
+        };
+        if case.is_exact && case.balls == 1 {
             let places = forces.iter().map(|&(force, at)| (at, force));
             plot.points
                 .push(Points::new(format!("n = {}, {lattice}", case.n), places));
         }
         for (depth, (force, at)) in DEPTHS.into_iter().zip(forces) {
             let name = format!(
-                "sphere {surface}, n = {}, {lattice}, {contact}, depth {depth}, force / theory",
+                "ball with {surface}, n = {}, {lattice}, {contact}, depth {depth}, force / theory",
                 case.n
             );
             let ratio = force / reference(at);
@@ -157,7 +160,7 @@ fn press(case: Case, depths: &[f32]) -> Result<Vec<(f64, f64)>> {
     let mut bodies: Vec<SoftBodyHandle> = Vec::new();
     for ball in 0..balls {
         let mut grid = VoxelGrid::<Dim3>::ball(n, 1.0)?;
-        if !case.known {
+        if !case.is_exact {
             let voxels = grid.voxels().map(|voxel| grid.material(voxel));
             grid = VoxelGrid::from_materials([n; 3], grid.voxel_size(), voxels.collect())?;
         }

@@ -14,10 +14,13 @@
 //! The law of Yeoh depends on the first invariant of the strain only. Rubber also depends, weakly, on the second, which
 //! grows most in equibiaxial tension. A law fitted to uniaxial tension alone therefore gives too little stress in
 //! equibiaxial tension, by 10 to 22 %, and in pure shear, by 5 to 8 %. The ends of Kawabata's curves are exceptions, by +1 and
-//! +6 %: there, the law is used at invariants beyond those of its fit. These rows are for comparison. With the law
-//! fitted to all three tests, the engine must miss each curve by at most twice as much as the law itself.
+//! +6 %: there, the law is used at invariants beyond those of its fit. These rows are for comparison. The
+//! law that is fitted to all three tests misses them by 2 to 7 % of their largest stress. The engine must give the stress of
+//! this law. It misses the bound of 2 % in equibiaxial tension, because the law keeps the volume: by Hooke's law, a Poisson's
+//! ratio of 0.49 lowers the stress at small strains by 0.7 % in uniaxial tension, 2.0 % in pure shear and 2.6 % in
+//! equibiaxial tension.
 
-use super::uniaxial::{computed, deviation_row};
+use super::uniaxial::{computed, fit_rows};
 use super::{Bound, Record, Role, Row, Setup, patch};
 use crate::check::parallel;
 use crate::material::fit::{self, Fit, Law, Mode, Sample};
@@ -104,14 +107,10 @@ pub fn experiment(progress: &Progress) -> Result<Record> {
             let (points, stresses) = (&tests[index], &found[index]);
             let case = format!("{name}, {mode}, law of {basis}");
             match *is_whole {
-                true => record.rows.push(deviation_row(
-                    case,
-                    Role::Calibration,
-                    fit,
-                    points,
-                    stresses,
-                    seconds,
-                )),
+                true => {
+                    let rows = fit_rows(&case, fit, points, stresses, seconds);
+                    record.rows.extend(rows);
+                }
                 false if index > 0 => {
                     let rows = predictions(&case, points, stresses, seconds);
                     record.rows.extend(rows);
@@ -119,10 +118,10 @@ pub fn experiment(progress: &Progress) -> Result<Record> {
                 false => {}
             }
             let measured = points.iter().map(|one| (one.stretch, 1e-6 * one.stress));
-            let ours =
+            let computed =
                 { points.iter().zip(stresses) }.map(|(one, stress)| (one.stretch, 1e-6 * stress));
             plot.curves.push(Curve::new(measured).named(mode));
-            plot.points.push(Points::new(mode, ours));
+            plot.points.push(Points::new(mode, computed));
         }
         plot.x = format!("stretch: {name}, law of {basis}");
         record.plots.push(plot);
@@ -139,9 +138,9 @@ fn predictions(case: &str, points: &[Sample], stresses: &[f64], seconds: f64) ->
             digits(points[index].stretch)
         ),
         role: Role::Prediction,
-        published: 1e-6 * points[index].stress,
+        reference: Some(1e-6 * points[index].stress),
         spread: None,
-        ours: 1e-6 * stresses[index],
+        computed: 1e-6 * stresses[index],
         bound: Bound::None,
         setup: Setup {
             n: patch::ACROSS,
@@ -164,9 +163,10 @@ mod tests_of_fits {
             .zip([[1.895e5, -1542.0, 40.88], [1.979e5, -4602.0, 182.0]])
         {
             let fit = Fit::to(Law::Yeoh, &tests(tables).unwrap().concat()).unwrap();
-            let ours = [0.5, 0.5 * fit.second, 0.5 * fit.third].map(|one| one * fit.shear_modulus);
-            for (ours, known) in ours.into_iter().zip(constants) {
-                assert!((ours / known - 1.0).abs() < 0.02, "{ours} {known}");
+            let fitted =
+                [0.5, 0.5 * fit.second, 0.5 * fit.third].map(|one| one * fit.shear_modulus);
+            for (fitted, scipy) in fitted.into_iter().zip(constants) {
+                assert!((fitted / scipy - 1.0).abs() < 0.02, "{fitted} {scipy}");
             }
         }
     }

@@ -18,8 +18,9 @@
 //!   √(2 (1 − ν²) G H / E), with ν = 0.22. Its load is raised to a strain of 1 %, because single precision does not
 //!   resolve the strain of 0.02 % of glass.
 //! - **Single edge notch**: a bar 25 × 5 mm of glass (strength 40 MPa, toughness √(E G) = 0.837 MPa √m) with clamped ends.
-//!   Poisson's ratio is 0, so that the clamps do not raise the stress; the factors do not depend on it. A small notch fails at the strength, a large one at K / F √(π A). The factors F are those of clamped ends: 1.162,
-//!   1.268 and 1.419 at A / W = 0.1, 0.2 and 0.3, computed by quadratic finite elements with quarter-point elements; free
+//!   Poisson's ratio is 0, so that the clamps do not raise the stress; the factors do not depend on it. A bar without a notch
+//!   and one with a small notch fail at the strength, one with a large notch at K / F √(π A). The factors F are those of
+//!   clamped ends: 1.162, 1.268 and 1.419 at A / W = 0.1, 0.2 and 0.3, computed by quadratic finite elements with quarter-point elements; free
 //!   ends have 1.19, 1.37 and 1.66 (Tada, Paris and Irwin, The Stress Analysis of Cracks Handbook).
 //! - **Double cantilever beam**: 51.5 × 20 mm of glass, 2.5 mm thick, pulled at its surfaces 1.5 mm from the end. The load at growth is
 //!   F = K B h^1.5 / (a (3.467 + 2.315 h / a)), h = 10 mm (Gross and Srawley 1966).
@@ -49,9 +50,10 @@ const LAYERS: usize = 2;
 const GLASS_STRAIN: f64 = 0.01;
 /// Voxels across the notched bar, which is 1 m wide (5 mm in the experiment).
 const ACROSS: usize = 100;
-/// Lengths of the notches [widths of the bar], and the factor F of those that fail by toughness.
+/// Lengths of the notches [widths of the bar], and the factor F of those that fail by toughness. A length of 0 is a bar
+/// without a notch.
 const NOTCHES: [(f64, f64); 5] = [
-    (0.005, 0.0),
+    (0.0, 0.0),
     (0.02, 0.0),
     (0.1, 1.162),
     (0.2, 1.268),
@@ -128,7 +130,7 @@ impl Case {
     }
 
     fn row(self, growth: &Growth) -> Row {
-        let (case, published, ours) = match self {
+        let (case, reference, computed) = match self {
             Self::Strip { is_rubber, crack } => {
                 let name = ["glass, scaled", "polyurethane"][usize::from(is_rubber)];
                 let opening = match is_rubber {
@@ -144,8 +146,12 @@ impl Case {
             Self::Notch(length) => {
                 let factor = factor_of(length);
                 let millimetres = 5.0 * length;
+                let name = match length > 0.0 {
+                    true => format!("edge notch of {millimetres} mm in glass"),
+                    false => "bar of glass without a notch".into(),
+                };
                 (
-                    format!("edge notch of {millimetres} mm in glass, stress at failure [MPa]"),
+                    format!("{name}, stress at failure [MPa]"),
                     40.0 * notch_strength(length, factor),
                     40.0 * growth.load / STRENGTH,
                 )
@@ -161,10 +167,10 @@ impl Case {
         };
         Row {
             case,
-            role: Role::Theory,
-            published,
+            role: Role::Verification,
+            reference: Some(reference),
             spread: None,
-            ours,
+            computed,
             bound: Bound::Relative(BOUND),
             setup: growth.setup,
         }
@@ -256,7 +262,7 @@ fn notched(length: f64) -> Result<Growth> {
     let grid = VoxelGrid::from_fn([5 * ACROSS, ACROSS, 1], voxel, |_| 1)?;
     let mut body = SoftBody::<Dim2>::new(grid, &[material])?;
     let middle = 2.5 + 0.01 * voxel;
-    if length as f32 > 0.75 * voxel {
+    if length > 0.0 {
         let tip = length as f32 - 0.01 * voxel;
         body.cut(&Blade::segment(
             Vec2::new(middle, -0.1),
@@ -346,7 +352,10 @@ fn notch_plot(cases: &[Case], found: &[Growth]) -> Plot {
         .iter()
         .zip(found)
         .filter_map(|(case, growth)| match case {
-            Case::Notch(length) => Some((5.0 * length, 40.0 * growth.load / STRENGTH)),
+            // The axis of lengths is logarithmic.
+            Case::Notch(length) if *length > 0.0 => {
+                Some((5.0 * length, 40.0 * growth.load / STRENGTH))
+            }
             _ => None,
         });
     let by_toughness = NOTCHES.iter().filter(|(_, factor)| *factor > 0.0);
@@ -356,7 +365,7 @@ fn notch_plot(cases: &[Case], found: &[Growth]) -> Plot {
         x: "length of the notch [mm]".into(),
         y: "stress at failure [MPa]".into(),
         curves: vec![
-            Curve::new([(0.02, 40.0), (1.5, 40.0)]).named("strength"),
+            Curve::new([(0.1, 40.0), (1.5, 40.0)]).named("strength"),
             Curve::new(curve).named("toughness"),
         ],
         points: vec![Points::new("computed", points)],
@@ -368,6 +377,15 @@ fn notch_plot(cases: &[Case], found: &[Growth]) -> Plot {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn notch_is_at_least_a_voxel_deep() {
+        let voxel = 1.0 / ACROSS as f64;
+        let notches = NOTCHES.into_iter().filter(|(length, _)| *length > 0.0);
+        assert!(
+            notches.clone().count() == 4 && notches.into_iter().all(|(length, _)| length >= voxel)
+        );
+    }
 
     #[test]
     fn published_onsets_follow_from_formulas() {

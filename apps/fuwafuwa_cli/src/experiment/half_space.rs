@@ -42,18 +42,18 @@ pub fn run(progress: &Progress) -> Result<Record> {
         substeps: None,
         seconds: start.elapsed().as_secs_f64(),
     };
-    let at = |depth: f64| displacement([0.0, 0.0, depth])[2];
+    let at = |depth: f64| boussinesq(POISSON, [0.0, 0.0, depth])[2];
     let mut record = Record::default();
     for depth in DEPTHS {
-        let (_, ours) = *{ found.iter() }
+        let (_, computed) = *{ found.iter() }
             .find(|(z, _)| *z == depth)
             .context("no node at the depth")?;
         record.rows.push(Row {
             case: format!("half-space, {depth} voxels below the force, u G s / F"),
-            role: Role::Theory,
-            published: at(depth as f64),
+            role: Role::Verification,
+            reference: Some(at(depth as f64)),
             spread: None,
-            ours,
+            computed,
             bound: Bound::Relative(TOLERANCE),
             setup,
         });
@@ -63,7 +63,7 @@ pub fn run(progress: &Progress) -> Result<Record> {
         y: "displacement u G s / F".into(),
         curves: vec![Curve::sampled(1.0..=N as f64, at).named("exact")],
         points: vec![Points::new(
-            "ours",
+            "computed",
             found
                 .iter()
                 .filter(|(z, _)| *z > 0)
@@ -75,11 +75,12 @@ pub fn run(progress: &Progress) -> Result<Record> {
     Ok(record)
 }
 
-/// Returns the displacement of a half-space at a point at a depth z, for G = 1 and a force of 1 along z.
-fn displacement([x, y, z]: [f64; 3]) -> [f64; 3] {
+/// Returns the displacement of a half-space with a Poisson's ratio at a point at a depth z, for G = 1 and a force of 1 along
+/// z at the origin [Boussinesq 1885].
+pub fn boussinesq(poisson: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
     let r = (x * x + y * y + z * z).sqrt();
-    let across = (z / (r * r * r) - (1.0 - 2.0 * POISSON) / (r * (r + z))) / (4.0 * PI);
-    let along = (z * z / (r * r * r) + 2.0 * (1.0 - POISSON) / r) / (4.0 * PI);
+    let across = (z / (r * r * r) - (1.0 - 2.0 * poisson) / (r * (r + z))) / (4.0 * PI);
+    let along = (z * z / (r * r * r) + 2.0 * (1.0 - poisson) / r) / (4.0 * PI);
     [across * x, across * y, along]
 }
 
@@ -101,7 +102,7 @@ fn press(n: usize, progress: &Progress) -> Result<Vec<(usize, f64)>> {
     for (id, node) in mesh.nodes() {
         let places = 3 * id.index()..3 * id.index() + 3;
         if is_far(node.at) {
-            given[places].copy_from_slice(&displacement(node.at.map(f64::from)));
+            given[places].copy_from_slice(&boussinesq(POISSON, node.at.map(f64::from)));
         } else if node.at == [0; 3] {
             load[3 * id.index() + 2] = 0.25;
         }
@@ -131,11 +132,11 @@ mod tests {
         let moved = |axes: &[(usize, f64)]| {
             let mut place = at;
             axes.iter().for_each(|&(axis, by)| place[axis] += by * step);
-            displacement(place)
+            boussinesq(POISSON, place)
         };
         let second = |k: usize, i: usize, j: usize| match i == j {
             true => {
-                (moved(&[(i, 1.0)])[k] - 2.0 * displacement(at)[k] + moved(&[(i, -1.0)])[k])
+                (moved(&[(i, 1.0)])[k] - 2.0 * boussinesq(POISSON, at)[k] + moved(&[(i, -1.0)])[k])
                     / (step * step)
             }
             false => {

@@ -40,12 +40,12 @@ pub fn run(_: &Progress) -> Result<Record> {
         substeps: Some(substeps),
         seconds: start.elapsed().as_secs_f64(),
     };
-    let row = |what: &str, published: f64, ours: f64, tolerance: f64| Row {
+    let row = |what: &str, reference: f64, computed: f64, tolerance: f64| Row {
         case: format!("hanging bar, {what}"),
-        role: Role::Theory,
-        published,
+        role: Role::Verification,
+        reference: Some(reference),
         spread: None,
-        ours,
+        computed,
         bound: Bound::Relative(tolerance),
         setup,
     };
@@ -74,7 +74,7 @@ pub fn run(_: &Progress) -> Result<Record> {
         y: "stress / ρ g L".into(),
         curves: vec![Curve::sampled(0.0..=1.0, |x| 1.0 - x).named("exact")],
         points: vec![Points::new(
-            "ours",
+            "computed",
             (0..SIZE[1]).map(|k| (place(k), stress(k))),
         )],
         ..Plot::default()

@@ -6,7 +6,7 @@
 
 use crate::material::fit::{Fit, Mode};
 use anyhow::{Context, Result};
-use fuwafuwa::{Damping, Dim3, Material, NodeId, SoftBody, Vec3, VoxelGrid};
+use fuwafuwa::{Damping, Dim3, Elasticity, Material, NodeId, SoftBody, StressLaw, Vec3, VoxelGrid};
 
 /// Voxels across the block.
 pub const ACROSS: usize = 4;
@@ -30,6 +30,19 @@ pub fn elastic(fit: &Fit) -> Material {
         toughness: f32::INFINITY,
         ..fit.material(POISSON)
     }
+}
+
+/// Returns a neo-Hookean material with the usual Young's modulus that does not break.
+pub fn rubber(poisson: f64, damping: Damping) -> Result<Material> {
+    let usual = Material::default();
+    Ok(Material {
+        elasticity: Elasticity::new(usual.elasticity.young, poisson)?,
+        stress_law: StressLaw::NeoHookean,
+        damping,
+        strength: f32::INFINITY,
+        toughness: f32::INFINITY,
+        ..usual
+    })
 }
 
 impl Block {

@@ -38,6 +38,7 @@
 //! A real gel ball of R = 10 mm, E = 20 kPa and 1000 kg/m³ has d/R = 0.1 at
 //! 0.14 m/s. The ball of the engine is 1 m across with E = 5 kPa and 100 kg/m³; d/R and t V/R depend on m V² / E* R³ only.
 
+use super::half_space::boussinesq;
 use super::{Bound, Record, Role, Row, Setup, of_check};
 use crate::check::bar::still;
 use crate::check::motion::{centre, material};
@@ -46,9 +47,9 @@ use crate::plot::{Curve, Plot, Points};
 use crate::report::Progress;
 use anyhow::Result;
 use fuwafuwa::{
-    Damping, Dim3, Material, RigidBody, Shape, SoftBody, Vec3, VoxelGrid, World, WorldConfig,
+    Damping, Dim3, Elasticity, Material, RigidBody, Shape, SoftBody, Vec3, VoxelGrid, World,
+    WorldConfig,
 };
-use std::f64::consts::PI;
 use std::time::Instant;
 
 /// Voxels across the balls.
@@ -103,15 +104,12 @@ fn sneddon(depth: f64) -> f64 {
 }
 
 /// Returns the displacement [m] of a half-space below y = 0 at a place [m] under the point load `force` at the origin, along
-/// −y [Boussinesq 1885].
-fn boussinesq(force: f64, material: &Material, at: [f64; 3]) -> [f64; 3] {
-    let poisson = material.elasticity.poisson;
-    let [x, depth, z] = [at[0], -at[1], at[2]];
-    let far = (x * x + depth * depth + z * z).sqrt();
-    let factor = force / (4.0 * PI * material.elasticity.shear_modulus());
-    let outwards = depth / far.powi(3) - (1.0 - 2.0 * poisson) / (far * (far + depth));
-    let down = depth * depth / far.powi(3) + 2.0 * (1.0 - poisson) / far;
-    [factor * outwards * x, -factor * down, factor * outwards * z]
+/// −y.
+fn under_point_load(force: f64, material: &Material, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    let Elasticity { poisson, .. } = material.elasticity;
+    let factor = force / material.elasticity.shear_modulus();
+    let [x, z, down] = boussinesq(poisson, [x, z, -y]).map(|moved| factor * moved);
+    [x, -down, z]
 }
 
 /// Presses balls between plates, a rigid ball into a block, and throws balls at a floor.
@@ -139,10 +137,10 @@ pub fn experiment(progress: &Progress) -> Result<Record> {
     for (&depth, &(force, setup)) in DEPTHS.iter().zip(&forces) {
         record.rows.push(Row {
             case: format!("rigid ball in a half-space, depth {depth} R, force / E* R²"),
-            role: Role::Theory,
-            published: sneddon(depth),
+            role: Role::Verification,
+            reference: Some(sneddon(depth)),
             spread: None,
-            ours: force,
+            computed: force,
             bound: Bound::Relative(TOLERANCE),
             setup,
         });
@@ -158,7 +156,7 @@ pub fn experiment(progress: &Progress) -> Result<Record> {
             Curve::sampled(0.02..=0.3, sneddon).named("Sneddon"),
             Curve::sampled(0.02..=0.3, |depth| 4.0 / 3.0 * depth.powf(1.5)).named("Hertz"),
         ],
-        points: vec![Points::new("engine", points)],
+        points: vec![Points::new("computed", points)],
         is_log: [true; 2],
         ..Plot::default()
     });
@@ -172,7 +170,7 @@ fn add_impacts(impacts: &[Impact], record: &mut Record) {
     let names = ["compression / R", "contact time × V / R"];
     let mut points = [const { Vec::new() }; 2];
     for (&depth, impact) in IMPACTS.iter().zip(impacts) {
-        let ours = [impact.depth, impact.time];
+        let computed = [impact.depth, impact.time];
         let slow = slow_impact(energy_of(depth), force_between_plates);
         let hertz_bound = match depth <= HERTZ_REACH {
             true => Bound::Relative(TOLERANCE),
@@ -183,23 +181,23 @@ fn add_impacts(impacts: &[Impact], record: &mut Record) {
             true => Bound::Relative(TOLERANCE),
             false => Bound::None,
         };
-        for (theory, published, bound) in [
+        for (theory, reference, bound) in [
             ("Hertz", hertz, hertz_bound),
             ("slow impact", slow, slow_bound),
         ] {
             for index in 0..2 {
                 record.rows.push(Row {
                     case: format!("impact, Hertz d/R {depth}, {}, {theory}", names[index]),
-                    role: Role::Theory,
-                    published: published[index],
+                    role: Role::Verification,
+                    reference: Some(reference[index]),
                     spread: None,
-                    ours: ours[index],
+                    computed: computed[index],
                     bound,
                     setup: impact.setup,
                 });
             }
         }
-        (0..2).for_each(|index| points[index].push((depth, ours[index])));
+        (0..2).for_each(|index| points[index].push((depth, computed[index])));
     }
     let hertz = |factor: f64| Curve::sampled(0.02..=0.32, move |depth| factor * depth);
     let slow = |index: usize| {
@@ -288,7 +286,7 @@ fn press(depth: f64, load: f64) -> Result<(f64, u32)> {
         let is_held = x == 0 || z == 0 || y == 0 || x == last[0] || z == last[2];
         let mut place = at;
         if is_held {
-            let moved = boussinesq(unit * load, &material, at);
+            let moved = under_point_load(unit * load, &material, at);
             place = [0, 1, 2].map(|k: usize| at[k] + moved[k]);
             body.fix_node(id);
         }
@@ -387,6 +385,7 @@ fn throw(depth: f64) -> Result<Impact> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn sneddon_forces_are_those_of_an_independent_calculation() {
@@ -423,7 +422,7 @@ mod tests {
                 let place = |by: f64| {
                     let mut moved = at;
                     moved[axis] += by;
-                    boussinesq(1.0, &material, moved)[i]
+                    under_point_load(1.0, &material, moved)[i]
                 };
                 (place(step) - place(-step)) / (2.0 * step)
             };

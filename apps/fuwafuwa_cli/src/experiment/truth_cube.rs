@@ -100,10 +100,10 @@ pub fn experiment(progress: &Progress) -> Result<Record> {
                 let percent = 100.0 * compression;
                 record.rows.push(Row {
                     case: format!("truth cube, {ends}, force at {percent} % [N], {theory}"),
-                    role: Role::Theory,
-                    published: factor * force_with_slip(compression),
+                    role: Role::Verification,
+                    reference: Some(factor * force_with_slip(compression)),
                     spread: None,
-                    ours: force,
+                    computed: force,
                     bound,
                     setup,
                 });
