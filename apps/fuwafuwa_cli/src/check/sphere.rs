@@ -115,7 +115,10 @@ pub fn check(progress: &Progress) -> Result<Findings> {
             let ratio = force / reference(at);
             findings.outcomes.push(match case.tolerance(depth) {
                 Some(tolerance) => Outcome::near(name, ratio, 1.0, tolerance),
-                None => Outcome::shown(name, ratio),
+                None => Outcome {
+                    reference: Some(1.0),
+                    ..Outcome::shown(name, ratio)
+                },
             });
         }
     }

@@ -116,11 +116,7 @@ fn under_point_load(force: f64, material: &Material, [x, y, z]: [f64; 3]) -> [f6
 pub fn experiment(progress: &Progress) -> Result<Record> {
     let mut record = of_check(check::sphere::check, ACROSS, progress)?;
     // The check presses balls of two sizes.
-    let coarse = record
-        .rows
-        .iter_mut()
-        .filter(|row| row.case.contains("n = 16"));
-    coarse.for_each(|row| row.setup.n = 16);
+    record.set_voxels("n = 16", 16);
     let forces = parallel::each(&DEPTHS, progress, |&depth| {
         let start = Instant::now();
         let (mut force, mut substeps) = (0.0, 0);
