@@ -78,6 +78,16 @@ enum Running {
     Idle,
 }
 
+impl Running {
+    /// Returns the length of its rounds [s].
+    fn most(&self) -> f32 {
+        match self {
+            Self::Idle => IDLE,
+            _ => SECONDS,
+        }
+    }
+}
+
 impl Check {
     /// Begins to check a level. Without a basket only its speed is checked.
     pub fn new(level: Arc<Level>) -> Self {
@@ -133,8 +143,8 @@ impl Check {
         if self.is_done() {
             return 1.0;
         }
-        let share = self.running.as_ref().map_or(0.0, |(round, _)| {
-            (round.ticks() as f32 * DEFAULT_TICK / SECONDS).min(1.0)
+        let share = self.running.as_ref().map_or(0.0, |(round, running)| {
+            (round.ticks() as f32 * DEFAULT_TICK / running.most()).min(1.0)
         });
         let waiting = self.left.len() + usize::from(self.running.is_some());
         ((self.all - waiting) as f32 + share) / self.all as f32
@@ -174,8 +184,7 @@ impl Check {
         if !is_idle {
             self.times.push(seconds);
         }
-        let most = if is_idle { IDLE } else { SECONDS };
-        let is_over = round.ticks() as f32 * DEFAULT_TICK >= most;
+        let is_over = round.ticks() as f32 * DEFAULT_TICK >= running.most();
         let outcome = round.progress().outcome;
         if outcome.is_none() && !is_over {
             return;

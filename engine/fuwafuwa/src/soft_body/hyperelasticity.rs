@@ -5,8 +5,8 @@
 //!
 //! ```text
 //! x = |F|² − 3 − 2 (J − 1)      y = min(max(x, 0), x_max)      g = 1 + 2 a y + 3 b y²
-//! W = μ/2 (x + a y² + b y³ + (g − 1) (x − y)) + (λ + μ)/2 (J − 1)² + μ k I₀/6 q³      q = max(1 − |F|² / I₀, 0)
-//! P = μ g (F − cof F) + (λ + μ) (J − 1) cof F − μ k q² F
+//! W = μ/2 (x + a y² + b y³ + (g − 1) (x − y)) + (λ + μ)/2 (J − 1)² + μ β I₀/6 q³      q = max(1 − |F|² / I₀, 0)
+//! P = μ g (F − cof F) + (λ + μ) (J − 1) cof F − μ β q² F
 //! ```
 //!
 //! At constant volume, x = |F|² − 3, and W is the law of [Yeoh 1993] with C₁ = μ/2, C₂ = a C₁ and C₃ = b C₁, or
@@ -15,7 +15,8 @@
 //! infinite. P is therefore finite for every F, and restores inverted elements. Small strains follow
 //! Hooke's law with μ and λ.
 //!
-//! The terms in q, with I₀ = 1.27 and k = 1.05, act where the mean stretch in 3D is below √(I₀/3) = 0.65. Without them, F = 0
+//! The terms in q, with I₀ = 1.27 and β = 1.05, act where the mean stretch is below √(I₀/3) = 0.65 in 3D, and below
+//! 0.37 in 2D. Without them, F = 0
 //! would be a local minimum of the energy: an element of a low Poisson's ratio that is crushed to half of its width would
 //! collapse to a point and stay there.
 //!
@@ -27,7 +28,7 @@
 //! E = V W + s k/2 Σ w |h|²      s = √(1 + (c max(t, 0) / Y)²)      P_total = P + s'(J) (k/2V) Σ w |h|² cof F
 //! ```
 //!
-//! The last term keeps the forces the gradient of the energy E. In plain elements, s = 1: in 2D, their det F is the
+//! The constant c is in [`tension_rate`]. The last term keeps the forces the gradient of the energy E. In plain elements, s = 1: in 2D, their det F is the
 //! ratio of areas.
 
 use crate::error::{Error, require};
@@ -41,8 +42,8 @@ use crate::soft_body::element_law::{Elasticity, Matrix, cofactor};
 /// An element of a hyperelastic material becomes stiffer where it is stretched. The world takes shorter substeps
 /// while a body is stiffer than at rest, see [`SoftBody::longest_substep`](crate::SoftBody::longest_substep).
 ///
-/// Graded elements of a hyperelastic material become stiffer against bending under a tension in all directions. They withstand
-/// about 6 times the shear modulus; rubber tears inside at less. With [`Grading::Uniform`](crate::Grading), the error of
+/// Graded elements of a hyperelastic material become stiffer against bending under a tension in all directions. They are
+/// stable up to a tension of about 6 times the shear modulus; rubber tears inside at less. With [`Grading::Uniform`](crate::Grading), the error of
 /// such bodies is smaller.
 ///
 /// Ignored under [`Law::Endo2004`](crate::Law::Endo2004).
@@ -106,9 +107,10 @@ impl StressLaw {
     }
 }
 
-/// I₀, the square of the deformation gradient below which an element resists further compression, and the factor k of this
-/// resistance. With a factor above 1, even an element that is a point is pushed apart.
-pub(crate) const CRUSHED: [f64; 2] = [1.27, 1.05];
+/// I₀: |F|² below which an element resists further compression.
+pub(crate) const CRUSH_THRESHOLD: f64 = 1.27;
+/// Factor β of this resistance. Above 1, even an element that is a point is pushed apart.
+pub(crate) const CRUSH_FACTOR: f64 = 1.05;
 
 /// Factors of a hyperelastic law.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -160,7 +162,7 @@ impl Invariants {
 
     /// q
     fn crushed(&self) -> f64 {
-        (1.0 - self.squares[0] / CRUSHED[0]).max(0.0)
+        (1.0 - self.squares[0] / CRUSH_THRESHOLD).max(0.0)
     }
 }
 
@@ -170,7 +172,7 @@ pub(crate) fn stress(elasticity: Elasticity, factors: Factors, deformation: &Mat
     let all = Invariants::of(deformation);
     let distortion = shear * factors.growth(all.stretched(factors));
     let pressure = (elasticity.lame() + shear) * (all.volume - 1.0);
-    let crushed = shear * CRUSHED[1] * all.crushed().powi(2);
+    let crushed = shear * CRUSH_FACTOR * all.crushed().powi(2);
     [0, 1, 2].map(|i: usize| {
         let grown = (deformation[i] - all.cofactor[i]) * distortion;
         grown + all.cofactor[i] * pressure - deformation[i] * crushed
@@ -184,7 +186,7 @@ pub(crate) fn energy(elasticity: Elasticity, factors: Factors, deformation: &Mat
     let (x, y) = (all.distortion(), all.stretched(factors));
     let beyond = (factors.growth(y) - 1.0) * (x - y).max(0.0);
     let swelling = all.volume - 1.0;
-    let crushed = CRUSHED[0] * CRUSHED[1] / 3.0 * all.crushed().powi(3);
+    let crushed = CRUSH_THRESHOLD * CRUSH_FACTOR / 3.0 * all.crushed().powi(3);
     0.5 * shear * (x + y * y * (factors.a + factors.b * y) + beyond + crushed)
         + 0.5 * (elasticity.lame() + shear) * swelling * swelling
 }
@@ -214,7 +216,7 @@ pub(crate) fn hourglass_growth<D: Dim>(elasticity: Elasticity, deformation: &Mat
 /// divided by λ + 2μ; at least 1.
 ///
 /// A wave with the normal n at rest and the direction of motion m has the stiffness
-/// μ g + 2 μ g' (m · (F − cof F) n)² + (λ + μ) (m · cof F n)² + 4 μ k q (m · F n)² / I₀, and the second derivative of J adds at
+/// μ g + 2 μ g' (m · (F − cof F) n)² + (λ + μ) (m · cof F n)² + 4 μ β q (m · F n)² / I₀, and the second derivative of J adds at
 /// most (λ + μ) |J − 1|. The estimate takes the largest value of each term.
 pub(crate) fn relative_stiffness(
     elasticity: Elasticity,
@@ -232,7 +234,7 @@ pub(crate) fn relative_stiffness(
     };
     let [lengths, areas] = all.squares;
     let apart = (lengths + areas - 6.0 * all.volume).max(0.0);
-    let crushed = 4.0 * CRUSHED[1] * all.crushed() / CRUSHED[0] * lengths;
+    let crushed = 4.0 * CRUSH_FACTOR * all.crushed() / CRUSH_THRESHOLD * lengths;
     let distortion = factors.growth(y) + 2.0 * slope.max(0.0) * apart + crushed;
     // Largest eigenvalue of a symmetric matrix, here of the square of cof F, from its trace and its norm.
     let spread = (areas * areas - 3.0 * lengths * all.volume * all.volume).max(0.0);

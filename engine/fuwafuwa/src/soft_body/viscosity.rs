@@ -131,8 +131,8 @@ pub(crate) fn viscous_stress(
 }
 
 /// Returns the antisymmetric matrix W with which (S + W)(I + E) is symmetric, for a strain E and a symmetric stress S. In the
-/// principal axes of E, with the stretches u, W₂₃ = S₂₃ (u₃ − u₂) / (u₂ + u₃): it is no larger than S unless the element is
-/// inverted. Then it is limited to the size of S.
+/// principal axes of E, with the stretches u, W₂₃ = S₂₃ (u₂ − u₃) / (u₂ + u₃): it is no larger than S unless the element is
+/// inverted. W of an inverted element is limited to about the size of S.
 fn turning_stress(strain: &Matrix, stress: &Matrix) -> Matrix {
     let stretch = [0, 1, 2].map(|i: usize| strain[i] + IDENTITY[i]);
     let dot = |a: &Matrix, i: usize, b: &Matrix, j: usize| a[i].dot(b[j]);

@@ -1,5 +1,6 @@
 //! Editing of a level: selection, drags, and the room that shows the level.
 
+use super::making::Sheets;
 use super::sharing::{is_made_here, origin_of};
 use super::{Game, Screen};
 use crate::session::Session;
@@ -71,12 +72,14 @@ pub struct Editor {
     returns: bool,
 }
 
-/// Place from which the editor was opened, if it is not the screen below it.
+/// Screen to which Back leads from the editor, if it is not the next one in the stack.
 pub enum EditorOrigin {
-    /// The paper.
-    Paper,
+    /// The paper, with the sheets that it had.
+    Paper(Box<Sheets>),
     /// The pause menu of a round in this level.
     Round(Arc<Level>),
+    /// The list, where the name of a level was to be changed: Back leads there from the page *Finish* as well.
+    Rename,
 }
 
 /// Drag of the selection.
@@ -175,6 +178,7 @@ impl Game {
 
     /// Goes on with the level that was left without being kept.
     pub fn go_on_editing(&mut self) {
+        self.maker.came_from = None;
         self.go(Screen::Editor);
     }
 
@@ -192,7 +196,21 @@ impl Game {
     /// Opens the page on which a level of the list gets another name.
     pub fn rename(&mut self, index: usize) {
         self.edit(index);
+        self.maker.came_from = Some(EditorOrigin::Rename);
         self.go(Screen::Finish);
+    }
+
+    /// Whether a level of the list was made here, so that it can be renamed.
+    pub fn can_rename(&self, index: usize) -> bool {
+        is_made_here(&self.levels[index].id)
+    }
+
+    /// Leaves the page *Finish* to the editor, or to the list if it was opened there.
+    pub fn leave_finish(&mut self) {
+        match self.maker.came_from {
+            Some(EditorOrigin::Rename) => self.leave_editor(),
+            _ => self.go_back(),
+        }
     }
 
     /// Selects everything.
@@ -216,10 +234,11 @@ impl Game {
     pub fn edit_room(&mut self) {
         let is_on_paper = self.screens.has(Screen::Paper);
         self.keep_replaced_level();
+        let sheets = is_on_paper.then(|| Box::new(self.maker.sheets()));
         self.maker.take_room();
         self.number_name();
         self.begin_editing(None);
-        self.maker.came_from = is_on_paper.then_some(EditorOrigin::Paper);
+        self.maker.came_from = sheets.map(EditorOrigin::Paper);
         // The room was never kept.
         self.maker.saved = None;
     }
@@ -244,14 +263,17 @@ impl Game {
     /// Goes back to where the editor was opened, after it was closed.
     pub(super) fn return_from_editor(&mut self) {
         match self.maker.came_from.take() {
-            Some(EditorOrigin::Paper) => self.open_paper(),
+            Some(EditorOrigin::Paper(sheets)) => {
+                self.maker.lay_out(*sheets);
+                self.open_paper();
+            }
             Some(EditorOrigin::Round(level)) => {
                 // An own level may have been changed.
                 let listed = self.listed(&level).map(|index| self.levels[index].clone());
                 self.play(&listed.unwrap_or(level));
                 self.go(Screen::Paused);
             }
-            None => {}
+            Some(EditorOrigin::Rename) | None => {}
         }
     }
 
@@ -264,6 +286,8 @@ impl Game {
 
     /// Shows the level that is being edited in the room.
     pub fn show_draft(&mut self) {
+        // A test may have shown elements.
+        self.bout.elements = None;
         let began = self.clock.now();
         match self.maker.draft.level() {
             Ok(level) => {
@@ -356,22 +380,22 @@ impl Game {
         let group = items::group_of(self.maker.draft.scene(), item);
         let editor = &mut self.maker.editor;
         let is_part = group.first() != Some(&item);
-        let is_group = is_same(&editor.selection, &group);
+        let is_group = has_same_items(&editor.selection, &group);
         let chosen = if is_part && is_group {
             vec![item]
         } else {
             group
         };
-        self.choose(chosen);
+        self.apply_selection(chosen);
     }
 
     /// Selects an item without what belongs to it.
     pub fn select_alone(&mut self, item: Item) {
-        self.choose(vec![item]);
+        self.apply_selection(vec![item]);
     }
 
     /// Selects items. If presses add to the selection, adds them, or takes them out if all are selected.
-    fn choose(&mut self, items: Vec<Item>) {
+    fn apply_selection(&mut self, items: Vec<Item>) {
         let editor = &mut self.maker.editor;
         let are_selected = items.iter().all(|item| editor.selection.contains(item));
         match (editor.is_adding, are_selected) {
@@ -391,8 +415,8 @@ impl Game {
         };
     }
 
-    /// Selects what a drag that begins on an item moves: the selection if it has the item, with all that belongs to a basket,
-    /// body or board.
+    /// Selects the items that a drag of `item` moves. A selection that contains it stays; the main item of a group adds the
+    /// rest of the group.
     pub fn select_to_drag(&mut self, item: Item) {
         let group = items::group_of(self.maker.draft.scene(), item);
         let editor = &mut self.maker.editor;
@@ -415,7 +439,7 @@ impl Game {
         let group = items::group_of(self.maker.draft.scene(), first);
         match selection.len() {
             1 => Some(first),
-            _ => is_same(selection, &group).then(|| group[0]),
+            _ => has_same_items(selection, &group).then(|| group[0]),
         }
     }
 
@@ -613,6 +637,6 @@ impl Game {
 }
 
 /// Returns whether two lists have the same items.
-fn is_same(one: &[Item], other: &[Item]) -> bool {
+fn has_same_items(one: &[Item], other: &[Item]) -> bool {
     one.len() == other.len() && one.iter().all(|item| other.contains(item))
 }

@@ -38,11 +38,6 @@ impl Game {
         self.go(Screen::Offered);
     }
 
-    /// Whether the game has a level, perhaps under another id.
-    pub fn knows(&self, level: &Level) -> bool {
-        self.place_of_known(level).is_some()
-    }
-
     /// Returns the index in [`Game::levels`] of a level that the game has, perhaps under another id or without its assists.
     fn place_of_known(&self, level: &Level) -> Option<usize> {
         self.listed(level).or_else(|| self.place_of_scene(level))

@@ -141,7 +141,7 @@ pub struct Maker {
     pub typed_name: Option<String>,
     /// Name of the level from which this one is made, unless it is the player's own.
     pub origin: Option<String>,
-    /// Place from which the editor was opened, unless it is the screen below it.
+    /// Screen to which Back leads from the editor, unless it is the next one in the stack.
     pub(super) came_from: Option<EditorOrigin>,
     /// Scene of the level when it was opened or kept last. `None` for a room that was never kept.
     pub saved: Option<Scene>,
@@ -164,6 +164,14 @@ pub struct Cursor {
     pub is_down: bool,
     /// Axis along which the cursor sweeps for a player with one switch.
     pub sweep: Option<usize>,
+}
+
+/// Paper and block, and the materials on them.
+pub struct Sheets {
+    paper: Drawing,
+    block: Drawing,
+    palette: Palette,
+    shows_block: bool,
 }
 
 impl Default for Maker {
@@ -359,6 +367,23 @@ impl Maker {
         self.put_drawing().ok();
         self.draft = self.room.clone();
         self.draft.restart(|_| {});
+    }
+
+    /// Returns what is on the sheets.
+    pub(super) fn sheets(&self) -> Sheets {
+        Sheets {
+            paper: self.paper.clone(),
+            block: self.block.clone(),
+            palette: self.palette.clone(),
+            shows_block: self.shows_block,
+        }
+    }
+
+    /// Lays out other sheets.
+    pub(super) fn lay_out(&mut self, sheets: Sheets) {
+        (self.paper, self.block) = (sheets.paper, sheets.block);
+        self.palette = sheets.palette;
+        self.show_block(sheets.shows_block);
     }
 
     /// Empties both sheets, and forgets all materials except the crayons.

@@ -87,7 +87,8 @@ impl Game {
     }
 
     /// Returns the index in [`Game::levels`] of an earlier version of a level from a file. Levels of several makers have
-    /// the ids of levels that were made here, so these do not tell that a level is an earlier version.
+    /// the ids of levels that were made here, so these do not tell that a level is an earlier version. Nor is a level of another
+    /// maker one.
     pub(super) fn place_of_earlier(&self, level: &Level) -> Option<usize> {
         if is_made_here(&level.id) {
             return None;
@@ -96,7 +97,8 @@ impl Game {
         let is_earlier = |index: &usize| {
             // Earlier versions of the game kept the ending of the file in the id.
             let known = &self.levels[*index].id;
-            self.is_own(*index) && known.strip_suffix(".toml").unwrap_or(known) == id
+            let is_by_maker = self.levels[*index].game().made_by == level.game().made_by;
+            self.is_own(*index) && is_by_maker && known.strip_suffix(".toml").unwrap_or(known) == id
         };
         (0..self.levels.len()).find(is_earlier)
     }

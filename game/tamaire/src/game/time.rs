@@ -36,7 +36,7 @@ impl Game {
             self.run_back(seconds);
             self.bout.effects.advance(seconds);
         } else if runs && self.screen() != Screen::Editor {
-            // The room of the editor, to which a test may just have returned, stays as it begins.
+            // In the editor, the room does not run.
             if self.bout.session.is_rewinding() {
                 self.end_rewind();
             }
@@ -243,10 +243,14 @@ impl Game {
             let is_known = self.listed(&level).is_some();
             let rewinds = self.bout.round().rewinds();
             let was_won = self.has_won_path();
+            // A win without a hand that moved is no feat: it sets no record, and nobody can race it.
+            let is_known = is_known && !outcome.is_by_itself();
             let is_best = is_known && self.records.note(&level, &outcome, rewinds);
             self.ending.is_due |= !was_won && self.has_won_path();
             self.bout.won = Some((outcome, is_best));
-            self.note_test_win();
+            if !outcome.is_by_itself() {
+                self.note_test_win();
+            }
             self.note_end();
             self.sound.play(Cue::Won(match outcome.route {
                 tamaire_play::Route::Squeeze => tamaire_sound::Route::Squeeze,

@@ -299,6 +299,9 @@ fn own_buttons(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Option<Leve
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = gap;
             for (text, action) in row {
+                if matches!(action, LevelAction::Rename(_)) && !game.can_rename(index) {
+                    continue;
+                }
                 let response = plain_button(ui, &theme, text, size, ButtonStyle::Other);
                 let told = format!("{text}: {name}");
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &told));

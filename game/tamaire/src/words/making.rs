@@ -66,6 +66,8 @@ pub struct MakingWords {
     pub paste: &'static str,
     pub remove: &'static str,
     pub done: &'static str,
+    /// Ends the selection.
+    pub unselect: &'static str,
     /// Tab of the things that can be added.
     pub things: &'static str,
     /// Name of the tab of the selection.
@@ -83,9 +85,10 @@ pub struct MakingWords {
     pub nothing_to_paint: &'static str,
     /// How things are moved in 3D, with a mouse and with fingers.
     pub how_in_space: [&'static str; 2],
-    /// How the selected thing is taken by keys, and how a taken one is moved.
+    /// How a thing is selected by keys, how the selected one is taken, and how a taken one is moved in 2D and in 3D.
+    pub how_marked: &'static str,
     pub how_selected: &'static str,
-    pub how_held: &'static str,
+    pub how_held: [&'static str; 2],
     pub front_view: &'static str,
     pub not_pasted: &'static str,
     pub on_hand: &'static str,
@@ -227,6 +230,7 @@ static ENGLISH: MakingWords = MakingWords {
     paste: "Paste",
     remove: "Remove",
     done: "Done",
+    unselect: "Done",
     things: "Add a thing",
     selection: "Selected",
     selected: |count| format!("{count} things"),
@@ -243,8 +247,12 @@ static ENGLISH: MakingWords = MakingWords {
         "Drag to move a thing along the floor. Hold Shift to move it up and down. Look around with the right mouse button.",
         "Drag to move a thing along the floor. Look around with two fingers.",
     ],
-    how_selected: "Enter takes it. Escape: done.",
-    how_held: "Arrows move it. Enter lets go.",
+    how_marked: "Enter selects it.",
+    how_selected: "Enter takes hold of it. Escape: done.",
+    how_held: [
+        "Arrows move it. Enter lets go.",
+        "Arrows move it, Page Up away and Page Down nearer. Enter lets go.",
+    ],
     front_view: "Front view",
     not_pasted: "There is no room for another one.",
     on_hand: "It hangs on the hand, because no body is near.",
@@ -417,6 +425,7 @@ static JAPANESE: MakingWords = MakingWords {
     paste: "はりつけ",
     remove: "けす",
     done: "できた",
+    unselect: "えらぶのを やめる",
     things: "ものを おく",
     selection: "えらんだもの",
     selected: |count| format!("{count}この もの"),
@@ -433,8 +442,12 @@ static JAPANESE: MakingWords = MakingWords {
         "ドラッグで ゆかの上を 動かせるよ。シフトを おすと 上下に 動くよ。右ボタンの ドラッグで 見回せるよ。",
         "ドラッグで ゆかの上を 動かせるよ。2本の指で 見回せるよ。",
     ],
+    how_marked: "エンターで えらぶ。",
     how_selected: "エンターで つかむ。エスケープで やめる。",
-    how_held: "やじるしで 動かす。エンターで はなす。",
+    how_held: [
+        "やじるしで 動かす。エンターで はなす。",
+        "やじるしで 動かす。ページアップで むこうへ、ページダウンで 手前へ。エンターで はなす。",
+    ],
     front_view: "正面から",
     not_pasted: "もう 入らないよ。",
     on_hand: "近くに からだが ないから、手に つながったよ。",
@@ -518,7 +531,7 @@ static JAPANESE: MakingWords = MakingWords {
     kind_name: |kind| match kind {
         Kind::Body(..) => "からだ",
         Kind::Wall => "かべ",
-        Kind::Ball => "動かない玉",
+        Kind::Ball => "動かない 玉",
         Kind::Bar => "ぼう",
         Kind::Glass => "ガラス",
         Kind::Curtain => "カーテン",
@@ -536,7 +549,7 @@ static JAPANESE: MakingWords = MakingWords {
         Kind::Button => "ボタン",
         Kind::Knife => "ナイフ",
         Kind::Saw => "のこぎり",
-        Kind::SecondHand => "ふたつめの手",
+        Kind::SecondHand => "ふたつめの 手",
         Kind::Fork => "フォーク",
         Kind::Tongs => "トング",
     },

@@ -198,17 +198,16 @@ fn swept(scene: &Scene, item: Item) -> Option<[Vec3; 2]> {
         return Some([low, high]);
     };
     let text = scene.obstacle.get(index)?;
-    let ends = text.path.iter().map(|&[_, x, y, z]| Vec3::new(x, y, z));
-    let ends = ends.map(|by| [low + by, high + by]);
-    let [low, high] = ends.fold([low, high], union);
-    let turns = text.angular_velocity.is_some();
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let radius = half.x.max(half.y);
-    let half = match turns {
-        true => Vec3::new(radius, radius, half.z),
-        false => half,
+    let radius = half.x.hypot(half.y);
+    let half = match text.angular_velocity {
+        Some(_) => Vec3::new(radius, radius, half.z),
+        None => half,
     };
-    Some([middle - half, middle + half])
+    let turned = [middle - half, middle + half];
+    let ends = text.path.iter().map(|&[_, x, y, z]| Vec3::new(x, y, z));
+    let ends = ends.map(|by| turned.map(|corner| corner + by));
+    Some(ends.fold(turned, union))
 }
 
 /// Returns the part of the view that is inside the planes along the axes, which are the walls of a room [m].

@@ -66,6 +66,12 @@ fn bars_of(scene: &Scene, item: Item) -> Vec<Item> {
     all.filter(encloses).collect()
 }
 
+/// Returns whether an item encloses a basket.
+fn is_bar(scene: &Scene, item: Item) -> bool {
+    let mut baskets = (0..basket_count(scene)).map(Item::Basket);
+    baskets.any(|basket| bars_of(scene, basket).contains(&item))
+}
+
 /// Returns the knives that an item carries.
 fn knives_of(scene: &Scene, item: Item) -> impl Iterator<Item = Item> {
     let knives = scene.knife.iter().enumerate();
@@ -85,14 +91,14 @@ pub(super) fn is_pinned(scene: &Scene, item: Item) -> bool {
     pins_of(scene, item).next().is_some()
 }
 
-/// Returns the small obstacles to which the pins of an item are fixed.
+/// Returns the small obstacles to which the pins of an item are fixed. The bars of a basket belong to the basket.
 fn supports_of(scene: &Scene, item: Item) -> Vec<Item> {
     let pins = scene.joint.iter();
     let pins = pins.filter(|joint| pinned(scene, joint) == Some(item));
     let ends = pins.flat_map(|joint| &joint.anchors);
     let mut found: Vec<Item> = ends
         .filter_map(holder_of_anchor)
-        .filter(|&end| end != item)
+        .filter(|&end| end != item && !is_bar(scene, end))
         .collect();
     found.sort_unstable();
     found.dedup();

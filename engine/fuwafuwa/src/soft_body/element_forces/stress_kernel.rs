@@ -10,7 +10,7 @@ use super::viscous_kernel::add_viscous_stress;
 use crate::foundation::dim::Dim;
 use crate::math::lanes::{at_least, if_positive, load, positive, splat};
 use crate::soft_body::element_law::Law;
-use crate::soft_body::hyperelasticity::CRUSHED;
+use crate::soft_body::hyperelasticity::{CRUSH_FACTOR, CRUSH_THRESHOLD};
 use fearless_simd::prelude::*;
 
 /// Second loop for unusual materials: updates the rotation and the internal state, and computes the stress.
@@ -96,7 +96,7 @@ fn hyperelastic_lanes<D: Dim, S: Simd>(
     let distortion = splat(simd, constants.shear) * (one + growth * stretched);
     let pressure = splat(simd, constants.bulk) * swelling;
     let area = pressure - distortion;
-    let [least, factor] = CRUSHED.map(|k| k as f32);
+    let [least, factor] = [CRUSH_THRESHOLD, CRUSH_FACTOR].map(|k| k as f32);
     let crushed = squares * splat(simd, -1.0 / least) + splat(simd, 1.0 - 3.0 / least);
     let crushed = at_least(crushed, zero);
     let length = distortion - splat(simd, constants.shear * factor) * (crushed * crushed);

@@ -98,14 +98,19 @@ fn look_around(game: &mut Game, ui: &mut Ui, room: Rect) {
 fn hint(game: &Game, ui: &Ui, room: Rect, is_space: bool) {
     let words = game.making();
     let has_touch = ui.input(|input| input.any_touches() || input.has_touch_screen());
-    let by_keys = { ui.memory(|memory| memory.focused()) }
-        .and_then(|id| ui.ctx().read_response(id))
-        .is_some_and(|response| is_on(ui, &response));
-    let text = match (by_keys, game.maker.editor.selection.is_empty()) {
-        (true, false) if game.maker.editor.moves_by_keys => words.how_held,
-        (true, false) => words.how_selected,
-        (_, true) if is_space => words.how_in_space[usize::from(has_touch)],
-        _ => return,
+    let editor = &game.maker.editor;
+    let marked = { items::items(game.maker.draft.scene()).into_iter() }.find(|&item| {
+        let response = ui.ctx().read_response(item_id(item));
+        response.is_some_and(|response| is_on(ui, &response))
+    });
+    let text = match marked {
+        Some(item) if !editor.selection.contains(&item) => words.how_marked,
+        Some(_) if editor.moves_by_keys => words.how_held[usize::from(is_space)],
+        Some(_) => words.how_selected,
+        None if is_space && editor.selection.is_empty() => {
+            words.how_in_space[usize::from(has_touch)]
+        }
+        None => return,
     };
     let theme = game.theme();
     let scale = hud::full_scale(game, ui);
@@ -125,6 +130,11 @@ fn hint(game: &Game, ui: &Ui, room: Rect, is_space: bool) {
     );
     let at = place.center() - galley.rect.center().to_vec2();
     ui.painter().galley(at, galley, theme.ink);
+}
+
+/// Returns the id of the widget of an item.
+fn item_id(item: Item) -> Id {
+    Id::unique(("item", item))
 }
 
 /// Returns the box on the screen around a box in the world.
@@ -172,7 +182,7 @@ fn floor(game: &mut Game, ui: &mut Ui, room: Rect, view: &View) {
     let floor = ui.interact(
         room,
         Id::unique("floor of the editor"),
-        // Keys go from thing to thing.
+        // The floor takes no keyboard focus.
         Sense::CLICK | Sense::DRAG,
     );
     if floor.clicked() {
@@ -190,7 +200,7 @@ fn floor(game: &mut Game, ui: &mut Ui, room: Rect, view: &View) {
 /// An item: a press selects it, a drag moves the selection.
 fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
     let name = game.item_name(item);
-    let response = ui.interact(place, Id::unique(("item", item)), Sense::click_and_drag());
+    let response = ui.interact(place, item_id(item), Sense::click_and_drag());
     let is_selected = game.maker.editor.is_selected(item);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, &name));
     let ink = game.theme().accent;
@@ -201,7 +211,7 @@ fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
             .rect_stroke(place.expand(4.0), 6.0, rim, StrokeKind::Outside);
     }
     if is_selected && has_keys && game.maker.editor.moves_by_keys {
-        // The keys hold it.
+        // Dashed: the arrow keys move this item.
         let line = Stroke::new(4.0, ink);
         let corners = [
             place.left_top(),

@@ -56,7 +56,7 @@ pub(in crate::screens) fn show(game: &mut Game, ui: &mut Ui) {
         game.maker.typed_name = None;
         game.settle_preview();
         game.blip(Menu::Back);
-        game.go_back();
+        game.leave_finish();
     }
 }
 

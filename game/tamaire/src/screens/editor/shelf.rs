@@ -74,7 +74,7 @@ impl Deed {
             Self::Scale(steps) => words.scale[usize::from(steps < 0)],
             Self::Copy => words.copy,
             Self::Remove => words.remove,
-            Self::Done => words.done,
+            Self::Done => words.unselect,
         }
     }
 
