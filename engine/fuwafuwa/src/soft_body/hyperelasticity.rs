@@ -172,7 +172,8 @@ pub(crate) fn stress(elasticity: Elasticity, factors: Factors, deformation: &Mat
     let all = Invariants::of(deformation);
     let distortion = shear * factors.growth(all.stretched(factors));
     let pressure = (elasticity.lame() + shear) * (all.volume - 1.0);
-    let crushed = shear * CRUSH_FACTOR * all.crushed().powi(2);
+    let q = all.crushed();
+    let crushed = shear * CRUSH_FACTOR * q * q;
     [0, 1, 2].map(|i: usize| {
         let grown = (deformation[i] - all.cofactor[i]) * distortion;
         grown + all.cofactor[i] * pressure - deformation[i] * crushed
@@ -186,7 +187,8 @@ pub(crate) fn energy(elasticity: Elasticity, factors: Factors, deformation: &Mat
     let (x, y) = (all.distortion(), all.stretched(factors));
     let beyond = (factors.growth(y) - 1.0) * (x - y).max(0.0);
     let swelling = all.volume - 1.0;
-    let crushed = CRUSH_THRESHOLD * CRUSH_FACTOR / 3.0 * all.crushed().powi(3);
+    let q = all.crushed();
+    let crushed = CRUSH_THRESHOLD * CRUSH_FACTOR / 3.0 * q * q * q;
     0.5 * shear * (x + y * y * (factors.a + factors.b * y) + beyond + crushed)
         + 0.5 * (elasticity.lame() + shear) * swelling * swelling
 }
