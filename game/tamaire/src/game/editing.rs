@@ -119,18 +119,25 @@ impl Editor {
 
     /// Remembers the selection in a state of the level.
     fn remember(&mut self, scene: &Arc<Scene>) {
-        let is_known = |known: &Weak<Scene>| std::ptr::eq(known.as_ptr(), Arc::as_ptr(scene));
         let remembered = &mut self.remembered;
-        remembered.retain(|(known, _)| known.strong_count() > 0 && !is_known(known));
+        remembered.retain(|(known, _)| known.strong_count() > 0 && !is_same_scene(known, scene));
         remembered.push((Arc::downgrade(scene), self.selection.clone()));
     }
 
     /// Restores the selection that was remembered for a state of the level, or selects nothing.
     fn recall(&mut self, scene: &Arc<Scene>) {
-        let is_known = |known: &Weak<Scene>| std::ptr::eq(known.as_ptr(), Arc::as_ptr(scene));
         let mut remembered = self.remembered.iter();
-        let found = remembered.find(|(known, _)| is_known(known));
+        let found = remembered.find(|(known, _)| is_same_scene(known, scene));
         self.selection = found.map_or_else(Vec::new, |(_, items)| items.clone());
+    }
+
+    /// Adds items to the selection that are not selected yet.
+    fn select_also(&mut self, items: Vec<Item>) {
+        for item in items {
+            if !self.selection.contains(&item) {
+                self.selection.push(item);
+            }
+        }
     }
 
     /// Forgets everything except what was copied and whether things snap.
@@ -400,12 +407,7 @@ impl Game {
         let are_selected = items.iter().all(|item| editor.selection.contains(item));
         match (editor.is_adding, are_selected) {
             (true, true) => editor.selection.retain(|known| !items.contains(known)),
-            (true, false) => {
-                let selection = &mut editor.selection;
-                let new = items.into_iter().filter(|item| !selection.contains(item));
-                let new: Vec<Item> = new.collect();
-                selection.extend(new);
-            }
+            (true, false) => editor.select_also(items),
             (false, _) => editor.selection = items,
         }
         editor.moves_by_keys &= !editor.selection.is_empty();
@@ -423,11 +425,7 @@ impl Game {
         if !editor.selection.contains(&item) {
             editor.selection = group;
         } else if group.first() == Some(&item) {
-            let new = group.into_iter();
-            let new: Vec<Item> = new
-                .filter(|item| !editor.selection.contains(item))
-                .collect();
-            editor.selection.extend(new);
+            editor.select_also(group);
         }
         editor.part = EditorPart::Selection;
     }
@@ -639,4 +637,9 @@ impl Game {
 /// Returns whether two lists have the same items.
 fn has_same_items(one: &[Item], other: &[Item]) -> bool {
     one.len() == other.len() && one.iter().all(|item| other.contains(item))
+}
+
+/// Returns whether a weak reference is to a scene.
+fn is_same_scene(known: &Weak<Scene>, scene: &Arc<Scene>) -> bool {
+    std::ptr::eq(known.as_ptr(), Arc::as_ptr(scene))
 }
