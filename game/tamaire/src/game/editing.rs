@@ -76,8 +76,8 @@ pub struct Editor {
 pub enum EditorOrigin {
     /// The paper, with the sheets that it had.
     Paper(Box<Sheets>),
-    /// The pause menu of a round in this level.
-    Round(Arc<Level>),
+    /// The pause menu of a round in this level. A replay, or a race against a chosen ghost, begins again there.
+    Round(Arc<Level>, Option<Box<Session>>),
     /// The list, where the name of a level was to be changed: Back leads there from the page *Finish* as well.
     Rename,
 }
@@ -192,12 +192,14 @@ impl Game {
     /// Opens the editor with the level of the current round.
     pub fn edit_current(&mut self) {
         let level = self.bout.round().level().clone();
-        let listed = self.listed(&level);
-        match listed {
+        let session = &self.bout.session;
+        let is_new_round = session.is_played() && !self.bout.is_ghost_chosen;
+        let session = (!is_new_round).then(|| Box::new(session.again()));
+        match self.listed(&level) {
             Some(index) => self.edit(index),
             None => self.edit_level(&level),
         }
-        self.maker.came_from = Some(EditorOrigin::Round(level));
+        self.maker.came_from = Some(EditorOrigin::Round(level, session));
     }
 
     /// Opens the page on which a level of the list gets another name.
@@ -241,6 +243,7 @@ impl Game {
     pub fn edit_room(&mut self) {
         let is_on_paper = self.screens.has(Screen::Paper);
         self.keep_replaced_level();
+        self.maker.lift_pen();
         let sheets = is_on_paper.then(|| Box::new(self.maker.sheets()));
         self.maker.take_room();
         self.number_name();
@@ -274,10 +277,20 @@ impl Game {
                 self.maker.lay_out(*sheets);
                 self.open_paper();
             }
-            Some(EditorOrigin::Round(level)) => {
-                // An own level may have been changed.
-                let listed = self.listed(&level).map(|index| self.levels[index].clone());
-                self.play(&listed.unwrap_or(level));
+            Some(EditorOrigin::Round(_, Some(session))) => {
+                let is_race = session.is_played();
+                self.begin(*session);
+                self.bout.is_ghost_chosen = is_race;
+                self.go(Screen::Paused);
+            }
+            Some(EditorOrigin::Round(level, None)) => {
+                // An own level may have been changed. It has kept its id.
+                let draft = &self.maker.draft;
+                let is_own = self.maker.origin.is_none() && draft.id() == level.id;
+                let mut levels = self.levels.iter();
+                let own = levels.find(|known| is_own && known.id == level.id);
+                let listed = own.or_else(|| self.listed(&level).map(|index| &self.levels[index]));
+                self.play(&listed.unwrap_or(&level).clone());
                 self.go(Screen::Paused);
             }
             Some(EditorOrigin::Rename) | None => {}
