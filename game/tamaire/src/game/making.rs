@@ -166,12 +166,13 @@ pub struct Cursor {
     pub sweep: Option<usize>,
 }
 
-/// Paper and block, and the materials on them.
+/// Paper and block, the materials on them, and the picture on the paper.
 pub struct Sheets {
     paper: Drawing,
     block: Drawing,
     palette: Palette,
     shows_block: bool,
+    picture: Option<PaperPicture>,
 }
 
 impl Default for Maker {
@@ -376,6 +377,7 @@ impl Maker {
             block: self.block.clone(),
             palette: self.palette.clone(),
             shows_block: self.shows_block,
+            picture: self.picture.clone(),
         }
     }
 
@@ -384,6 +386,7 @@ impl Maker {
         (self.paper, self.block) = (sheets.paper, sheets.block);
         self.palette = sheets.palette;
         self.show_block(sheets.shows_block);
+        self.picture = sheets.picture;
     }
 
     /// Empties both sheets, and forgets all materials except the crayons.
