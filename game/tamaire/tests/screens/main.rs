@@ -1,6 +1,7 @@
 //! The game in an offscreen window, drawn by a software adapter (Mesa's llvmpipe): input, texts, appearance,
 //! and robustness.
 
+mod back;
 mod clicks;
 mod contrast;
 mod editing;
