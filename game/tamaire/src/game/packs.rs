@@ -93,14 +93,28 @@ impl Game {
         if is_made_here(&level.id) {
             return None;
         }
-        let id = stored_id(level);
-        let is_earlier = |index: &usize| {
+        let (id, game) = (stored_id(level), level.game());
+        let is_by_maker = |known: &Level| known.game().made_by == game.made_by;
+        let own = (0..self.levels.len()).filter(|&index| self.is_own(index));
+        let own = own.filter(|&index| is_by_maker(&self.levels[index]));
+        let after_id = |index: usize| {
             // Earlier versions of the game kept the ending of the file in the id.
-            let known = &self.levels[*index].id;
-            let is_by_maker = self.levels[*index].game().made_by == level.game().made_by;
-            self.is_own(*index) && is_by_maker && known.strip_suffix(".toml").unwrap_or(known) == id
+            let known = &self.levels[index].id;
+            known
+                .strip_suffix(".toml")
+                .unwrap_or(known)
+                .strip_prefix(&id)
         };
-        (0..self.levels.len()).find(is_earlier)
+        // If a level of another maker has the id, the earlier version has a number after it. A level of the same maker may have
+        // such an id, too, but then another name.
+        let is_numbered = |index: usize| {
+            let number = after_id(index).and_then(|after| after.strip_prefix('-'));
+            let is_number = number.is_some_and(|number| number.parse::<usize>().is_ok());
+            is_number && game.made_by.is_some() && self.levels[index].game().name == game.name
+        };
+        let mut exact = own.clone().filter(|&index| after_id(index) == Some(""));
+        let mut numbered = own.filter(|&index| is_numbered(index));
+        exact.next().or_else(|| numbered.next())
     }
 
     /// Stores a level in place of another own one, under its id.
