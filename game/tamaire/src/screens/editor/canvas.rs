@@ -137,6 +137,11 @@ fn item_id(item: Item) -> Id {
     Id::unique(("item", item))
 }
 
+/// Gives the keyboard focus to an item.
+pub(super) fn focus(ui: &Ui, item: Item) {
+    ui.memory_mut(|memory| memory.request_focus(item_id(item)));
+}
+
 /// Returns the box on the screen around a box in the world.
 fn on_screen(view: &View, low: Vec3, high: Vec3) -> Rect {
     let mut place = Rect::NOTHING;

@@ -43,7 +43,12 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui) {
     let is_escape = ui.input(|input| input.key_pressed(Key::Escape));
     let is_free = game.maker.editor.selection.is_empty();
     if is_escape && !is_free && !had_keys {
+        let item = game.main_item();
         game.select_nothing();
+        // The mark stays at the thing, so that keys go on from there.
+        if let Some(item) = item {
+            canvas::focus(ui, item);
+        }
     }
     if leaves || is_escape && is_free && !had_keys {
         game.blip(Menu::Back);
