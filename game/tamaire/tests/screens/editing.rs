@@ -1,6 +1,7 @@
 //! Levels in the editor: what is kept, sent and received, and what one step of undo covers.
 
 use crate::making::{drag, place_of_item, slow_clock};
+use crate::told::tells;
 use crate::window::*;
 use app_shell::Pads;
 use eframe::App;
@@ -13,6 +14,7 @@ use fuwafuwa_scenes::scene::ObstacleText;
 use std::fs;
 use std::path::{Path, PathBuf};
 use tamaire::game::{Game, Screen};
+use tamaire::input::{Action, InputSource};
 use tamaire::platform::{Files, OpenRequest, Sound};
 use tamaire_maker::drawing::Brush;
 use tamaire_maker::items::{Item, Kind};
@@ -112,6 +114,39 @@ fn files_of_two_friends_with_the_same_name_stay_apart() {
     }
     let names: Vec<&str> = own(&game).into_iter().map(|(_, name)| name).collect();
     assert_eq!(names, ["one", "two", "four"]);
+}
+
+#[test]
+fn newer_file_replaces_the_level_of_its_maker_only() {
+    let mut game = plain_game();
+    let files = [
+        ("Mika", "garden", 2.0),
+        ("Kai", "garden", 3.0),
+        ("Mika", "garden", 4.0),
+        ("Kai", "garden", 5.0),
+        // Another level of the same maker, whose file has the id of the one that is numbered here.
+        ("Kai", "pond", 6.0),
+    ];
+    for (maker, name, hold) in files {
+        let mut scene = small("garden.toml", name).scene().clone();
+        let rules = scene.game.as_mut().unwrap();
+        (rules.made_by, rules.hold) = (Some(maker.into()), hold);
+        let level = Level::from_scene("garden.toml", scene).unwrap();
+        game.open(OpenRequest::Level(Ok(Box::new(level))));
+        let played = game.bout.round().level().game();
+        assert_eq!(
+            (played.made_by.as_deref(), played.hold),
+            (Some(maker), hold)
+        );
+    }
+    let own = game
+        .levels
+        .iter()
+        .filter(|level| level.id.starts_with("garden"));
+    let own: Vec<_> = own
+        .map(|level| (level.id.as_str(), level.game().hold))
+        .collect();
+    assert_eq!(own, [("garden", 4.0), ("garden-2", 5.0), ("garden-3", 6.0)]);
 }
 
 #[test]
@@ -630,4 +665,59 @@ fn copying_without_a_selection_leaves_the_clipboard() {
         let is_copy = |command: &OutputCommand| matches!(command, OutputCommand::CopyText(_));
         assert!(!commands.iter().any(is_copy));
     }
+}
+
+#[test]
+fn hint_tells_what_keys_do_with_the_marked_thing() {
+    for dim in [2, 3] {
+        let mut window = editor(Files::nowhere());
+        game(&mut window).edit_blank(dim);
+        let words = window.state().game.making();
+        let held = words.how_held[usize::from(dim == 3)];
+        let hints = [
+            words.how_in_space[0],
+            words.how_marked,
+            words.how_selected,
+            held,
+        ];
+        let check = |window: &Window, shown: Option<&str>| {
+            for hint in hints {
+                assert_eq!(tells(window, hint), shown == Some(hint), "{dim}: {hint}");
+            }
+        };
+        frames(&mut window, 3);
+        check(&window, hints[..1].iter().copied().find(|_| dim == 3));
+        press(&mut window, Key::Tab);
+        let name = game(&mut window).item_name(Item::Body(0));
+        window.get_by_label(&name).focus();
+        frames(&mut window, 2);
+        check(&window, Some(words.how_marked));
+        // The mark stays after Escape, and the next one leaves the editor.
+        let steps = [
+            (Key::Enter, words.how_selected),
+            (Key::Enter, held),
+            (Key::Escape, words.how_selected),
+            (Key::Escape, words.how_marked),
+        ];
+        for (key, hint) in steps {
+            press(&mut window, key);
+            check(&window, Some(hint));
+        }
+        press(&mut window, Key::Escape);
+        assert_ne!(screen(&window), Screen::Editor);
+    }
+}
+
+#[test]
+fn elements_of_a_test_are_hidden_in_the_editor() {
+    let mut game = plain_game();
+    game.settings.reduced_motion = true;
+    game.edit_blank(2);
+    game.test_level();
+    game.act(Action::Elements, InputSource::Keys);
+    assert!(game.bout.elements.is_some());
+    game.end_test();
+    game.update(0.02);
+    assert_eq!(game.screen(), Screen::Editor);
+    assert!(game.bout.elements.is_none());
 }

@@ -1,10 +1,12 @@
 //! Tests of saved data, and of failures in saving and loading them.
 
+use crate::told::tells;
 use crate::window::*;
 use app_shell::Pads;
 use egui::accesskit::Role;
 use egui::{Event, PointerButton};
 use egui_kittest::kittest::Queryable;
+use fuwafuwa::DEFAULT_TICK;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
@@ -14,7 +16,8 @@ use std::thread::{self, ThreadId};
 use std::time::SystemTime;
 use tamaire::game::{Game, Screen};
 use tamaire::input::Scanning;
-use tamaire::platform::{Entry, Files, Kind, Nowhere, Sound, Storage, UpdateEntry};
+use tamaire::platform::{Entry, Files, Kind, Nowhere, OpenRequest, Sound, Storage, UpdateEntry};
+use tamaire_play::Level;
 
 /// Storage in memory that records the writing threads, and that can be full.
 #[derive(Clone, Default)]
@@ -149,6 +152,44 @@ fn two_games_at_once_lose_no_record() {
     let (records, damage) = Files::in_folder(folder.path()).records();
     assert_eq!(damage, None);
     assert!(records.of("classic").is_some() && records.of("classic-3d").is_some());
+}
+
+#[test]
+fn win_without_a_moved_hand_is_no_record_and_no_ghost() {
+    let folder = folder();
+    let mut window = window(Files::in_folder(folder.path()));
+    game(&mut window).settings.race_best = true;
+    // The body is in the basket from the start.
+    let mut scene = Level::open("classic").unwrap().scene().clone();
+    let basket = &mut scene.game.as_mut().unwrap().basket;
+    basket.as_mut().unwrap().half = [3.0; 3];
+    let level = Level::from_scene("easy", scene).unwrap();
+    game(&mut window).open(OpenRequest::Level(Ok(Box::new(level.clone()))));
+    for is_pushed in [false, true] {
+        if is_pushed {
+            win(&mut window);
+        } else {
+            let game = game(&mut window);
+            (0..300).for_each(|_| game.update(DEFAULT_TICK));
+        }
+        assert_eq!(screen(&window), Screen::Result);
+        frames(&mut window, 2);
+        let said = game(&mut window).words();
+        assert_eq!(tells(&window, said.won_by_itself), !is_pushed);
+        assert_eq!(tells(&window, said.new_best), is_pushed);
+        wait_for_files(&mut window);
+        let now = game(&mut window);
+        assert_eq!(now.records.of("easy").is_some(), is_pushed);
+        assert_eq!(now.files.best(&level).is_some(), is_pushed);
+        now.retry();
+        assert_eq!(now.bout.session.ghost().is_some(), is_pushed);
+    }
+    // Nor does its maker win it in a test.
+    let game = game(&mut window);
+    game.edit_current();
+    game.test_level();
+    (0..300).for_each(|_| game.update(DEFAULT_TICK));
+    assert!(game.bout.won.is_some() && game.maker.won.is_none());
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod clicks;
 mod contrast;
 mod editing;
 mod fingers;
+mod finish;
 mod help;
 mod hostile;
 mod kept;
