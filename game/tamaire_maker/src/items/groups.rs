@@ -132,3 +132,40 @@ fn is_support(scene: &Scene, item: Item, held: Item) -> bool {
     let sizes = length(item).zip(length(held));
     is_still && sizes.is_some_and(|(support, board)| support <= board)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draft::Draft;
+    use crate::items::{Kind, add};
+    use fuwafuwa_scenes::scene::JointAnchorText;
+
+    #[test]
+    fn bar_of_a_basket_is_no_support_of_a_board_that_is_pinned_to_it() {
+        for is_in_basket in [false, true] {
+            let mut scene = Draft::blank(2).scene().clone();
+            let board = add(&mut scene, Kind::SeeSaw, Vec3::ZERO);
+            let kind = if is_in_basket {
+                Kind::Basket
+            } else {
+                Kind::Bar
+            };
+            let enclosed = add(&mut scene, kind, Vec3::ZERO);
+            let &bar = enclosed.last().unwrap();
+            let Item::Obstacle(index) = bar else {
+                panic!("{bar:?}");
+            };
+            assert_eq!(group_of(&scene, board[0]), board);
+            scene.joint[0].anchors[0] = JointAnchorText {
+                obstacle: Some(index + 1),
+                ..scene.joint[0].anchors[0].clone()
+            };
+            let with_bar: Vec<Item> = board.iter().copied().chain([bar]).collect();
+            let expected = match is_in_basket {
+                true => [board.clone(), enclosed],
+                false => [with_bar.clone(), with_bar],
+            };
+            assert_eq!([board[0], bar].map(|item| group_of(&scene, item)), expected);
+        }
+    }
+}

@@ -4,9 +4,10 @@ use crate::palette::crayon;
 use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Layers, Rotation, World};
 use fuwafuwa_scenes::scene::{BodyText, Form, WishText};
 use std::f32::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
 use tamaire_play::level::built_in;
 use tamaire_play::playground::Stuff;
-use tamaire_play::{Joints, Level};
+use tamaire_play::{AnyRound, InputFrame, Joints, Level};
 
 /// Text of a built-in level, the scene that was read from it, and that with embedded files.
 pub(crate) fn start_of(id: &str) -> (&'static str, Scene, Scene) {
@@ -801,6 +802,52 @@ fn everything_can_be_added_to_every_level() {
             "{id}: {:?}",
             checked.err()
         );
+    }
+}
+
+/// Returns the boxes that the rigid bodies of a level without a moved hand have in a round of 4 s.
+fn boxes_in_a_round(scene: &Scene) -> Vec<Vec<[Vec3; 2]>> {
+    let level = Level::from_scene("round", scene.clone()).unwrap();
+    let mut round = AnyRound::new(Arc::new(level));
+    let boxes = (0..240).map(|_| {
+        round.step(InputFrame::default());
+        match &round {
+            AnyRound::Plane(round) => rigid_boxes(round.world()),
+            AnyRound::Space(round) => rigid_boxes(round.world()),
+        }
+    });
+    boxes.collect()
+}
+
+#[test]
+fn added_things_that_move_stay_inside_the_walls() {
+    for (dim, corner) in [(2, [1.6, 1.0, 0.0]), (3, [1.6, 1.0, 1.0])] {
+        let blank = Draft::blank(dim);
+        for kind in [Kind::Lift, Kind::Paddle, Kind::Knife, Kind::Saw, Kind::Door] {
+            for side in [-1.0, 1.0] {
+                let mut scene = blank.scene().clone();
+                scene.body[0].n = Some(6);
+                let new = add(&mut scene, kind, side * Vec3::from(corner));
+                let Some(&Item::Obstacle(index)) =
+                    new.iter().find(|item| matches!(item, Item::Obstacle(_)))
+                else {
+                    panic!("{kind:?}: {new:?}");
+                };
+                // A door moves only while its button is pressed.
+                scene.obstacle[index].switch = None;
+                let [from, to] = scene.view.map(Vec3::from);
+                let axes = if dim == 2 {
+                    Vec3::new(1.0, 1.0, 0.0)
+                } else {
+                    Vec3::ONE
+                };
+                for boxes in boxes_in_a_round(&scene) {
+                    let [low, high] = boxes[index];
+                    let beyond = (from - low).max(high - to) * axes;
+                    assert!(beyond.max_element() < 1e-3, "{kind:?} in {dim}D: {beyond}");
+                }
+            }
+        }
     }
 }
 
