@@ -14,8 +14,8 @@ use app_shell::widgets::{
     ButtonStyle, LETTERS, button, fitted, focus_ring, highlight, is_on, least_letters, plain_button,
 };
 use egui::{
-    Color32, FontId, Painter, Rect, Response, RichText, Role, Sense, Stroke, Tooltip, Ui, Vec2,
-    WidgetInfo, pos2, vec2,
+    Color32, FontId, Painter, Rect, RectAlign, Response, RichText, Role, Sense, Stroke, Tooltip,
+    Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use std::collections::BTreeMap;
 use tamaire_play::level::CHAPTERS;
@@ -409,6 +409,9 @@ fn star(is_earned: bool) -> &'static str {
     if is_earned { "★" } else { "☆" }
 }
 
+/// Greatest height of a line of a tooltip [points].
+const LINE: f32 = 28.0;
+
 /// Shows a tooltip with the stars and best times of a level.
 fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<&Record>) {
     let (theme, said) = (game.theme(), game.words());
@@ -427,10 +430,23 @@ fn explain(ui: &Ui, game: &Game, tile: &Response, level: &Level, record: Option<
     let rewound = rewound.map(|best| format!("{}, {}", time(best), said.rewound));
     let times = times.map(time).chain(rewound).chain(assisted);
     let lines: Vec<String> = stars.chain(times).collect();
-    if lines.is_empty() {
+    // The tooltip of a tile that is scrolled away would cover the header.
+    if lines.is_empty() || !ui.is_rect_visible(tile.rect) {
         return;
     }
-    let tooltip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), tile.id, tile);
+    // Without room below the tile, the tooltip is above it, or beside it if the header is there.
+    let height = LINE * (lines.len() + 1) as f32;
+    let places: &[RectAlign] = match tile.rect.top() - height > ui.clip_rect().top() {
+        true => &[RectAlign::TOP_START, RectAlign::TOP_END],
+        false => &[
+            RectAlign::RIGHT_START,
+            RectAlign::LEFT_START,
+            RectAlign::RIGHT_END,
+            RectAlign::LEFT_END,
+        ],
+    };
+    let mut tooltip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), tile.id, tile);
+    tooltip.popup = tooltip.popup.align_alternatives(places);
     tooltip.gap(6.0).show(|ui| {
         for line in lines {
             ui.label(RichText::new(line).size(17.0).color(theme.ink));

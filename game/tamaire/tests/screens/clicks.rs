@@ -2,17 +2,19 @@
 
 use crate::window::*;
 use app_shell::Pads;
-use egui::Key;
+use egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use fuwafuwa::Vec3;
 use std::fs;
+use std::sync::Arc;
 use tamaire::game::{Game, Notice, Screen};
 use tamaire::input::{Action, InputSource};
 use tamaire::platform::{Files, Sound};
+use tamaire::records::Records;
 use tamaire::settings::Settings;
 use tamaire::words::Language;
 use tamaire_play::replay::VERSION;
-use tamaire_play::{BotKind, Route};
+use tamaire_play::{BotKind, Level, Route};
 
 #[test]
 fn menus_lead_from_title_to_round_and_back() {
@@ -595,4 +597,36 @@ fn large_text_is_as_large_as_promised() {
         let ratio = window.ctx.zoom_factor();
         assert!((ratio - zoom).abs() < 1e-3, "{size}: {ratio}");
     }
+}
+
+#[test]
+fn tooltips_of_levels_leave_the_header_free() {
+    let mut window = open(Files::nowhere(), vec2(960.0, 420.0), 0.25);
+    // Wins by all routes, with and without assists, give long tooltips.
+    let best = "{ squeeze = 900, shave = 900, mix = 900 }";
+    let record =
+        |level: &Arc<Level>| format!("[{}]\nbest = {best}\nbest_assisted = {best}\n", level.id);
+    let records: String = game(&mut window).levels.iter().map(record).collect();
+    game(&mut window).records = Records::read(&records).0;
+    game(&mut window).go(Screen::Levels);
+    frames(&mut window, 2);
+    window.hover_at(window.ctx.content_rect().lerp_inside(vec2(0.1, 0.8)));
+    let mut shown = 0;
+    for _ in 0..30 {
+        window.event(Event::MouseWheel {
+            unit: MouseWheelUnit::Point,
+            delta: vec2(0.0, -20.0),
+            phase: TouchPhase::Move,
+            source: MouseWheelSource::Unknown,
+            modifiers: Modifiers::NONE,
+        });
+        frames(&mut window, 6);
+        let header = button(&window, "Back").rect();
+        for line in window.query_all_by_label_contains("☆ ") {
+            let line = line.rect();
+            assert!(line.top() > header.bottom(), "{line:?}, {header:?}");
+            shown += 1;
+        }
+    }
+    assert!(shown > 30, "{shown}");
 }
