@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use tamaire::game::{Game, Screen};
 use tamaire::input::{Action, InputSource};
 use tamaire::platform::{Files, OpenRequest, Sound};
+use tamaire::words::Language;
 use tamaire_maker::drawing::Brush;
 use tamaire_maker::items::{Item, Kind};
 use tamaire_play::level::NAMED;
@@ -720,4 +721,17 @@ fn elements_of_a_test_are_hidden_in_the_editor() {
     game.update(0.02);
     assert_eq!(game.screen(), Screen::Editor);
     assert!(game.bout.elements.is_none());
+}
+
+#[test]
+fn seconds_of_properties_are_named_in_the_language() {
+    for (language, second) in [(Language::English, " s"), (Language::Japanese, "秒")] {
+        let mut window = editor(Files::nowhere());
+        game(&mut window).settings.language = language;
+        game(&mut window).edit(0);
+        game(&mut window).change_level(|scene| scene.game.as_mut().unwrap().hold = 2.5);
+        game(&mut window).go(Screen::Properties);
+        frames(&mut window, 3);
+        assert!(tells(&window, &format!("2.5{second}")), "{language:?}");
+    }
 }

@@ -123,6 +123,11 @@ impl Fields<'_> {
         });
     }
 
+    /// Shows a slider for a time [s].
+    fn slide_seconds(&mut self, name: &str, value: &mut f32, range: [f32; 3]) {
+        slider_with(self.ui, self.theme, name, value, range, self.said.seconds);
+    }
+
     /// Shows a slider for a value that may be missing; then it has a usual one.
     fn slide_or(
         &mut self,
@@ -372,7 +377,7 @@ fn path(fields: &mut Fields, text: &mut ObstacleText) {
     }
     let moves = changed[1..] != [0.0; 3];
     if moves {
-        fields.slide(words.seconds, &mut changed[0], [0.2, 10.0, 0.1], " s");
+        fields.slide_seconds(words.seconds, &mut changed[0], [0.2, 10.0, 0.1]);
         let mut repeat = text.repeat.unwrap_or(RepeatText::Once);
         let [once, back, repeated] = words.repeats;
         let options = [
@@ -609,7 +614,7 @@ fn of_level(fields: &mut Fields, scene: &mut Scene, language: Language) {
         return;
     }
     fields.slide_share(words.share, &mut game.share);
-    fields.slide(words.hold, &mut game.hold, [0.1, 10.0, 0.1], " s");
+    fields.slide_seconds(words.hold, &mut game.hold, [0.1, 10.0, 0.1]);
     fields.toggle(words.alone, &mut game.alone);
     for place in 0..GOALS {
         goal(fields, &mut game.wish, place);
@@ -704,13 +709,10 @@ fn goal(fields: &mut Fields, wishes: &mut Vec<Wish>, place: usize) {
         return;
     };
     match goal {
-        Goal::Time => fields.slide_or(
-            words.seconds,
-            &mut wish.seconds,
-            10.0,
-            [1.0, 120.0, 1.0],
-            " s",
-        ),
+        Goal::Time => {
+            let seconds = wish.seconds.get_or_insert(10.0);
+            fields.slide_seconds(words.seconds, seconds, [1.0, 120.0, 1.0]);
+        }
         Goal::Little => {
             let mut torn = 100.0 * (1.0 - wish.kept.unwrap_or(0.9));
             let before = torn;
