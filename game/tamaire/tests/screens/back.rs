@@ -109,7 +109,9 @@ fn sheets_of_the_paper_come_back_from_the_editor() {
 #[test]
 fn renaming_leads_back_to_the_list() {
     let mut window = editor();
-    ["one", "two"].map(|name| make(&mut window, name));
+    for name in ["one", "two"] {
+        make(&mut window, name);
+    }
     game(&mut window).go(Screen::Levels);
     frames(&mut window, 3);
     let before = own(&mut window);
