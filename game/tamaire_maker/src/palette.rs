@@ -14,8 +14,8 @@ impl Default for Palette {
     }
 }
 
-/// Returns the material of a crayon with its colour. Jelly and biscuits are tougher than in a playground, because drawings
-/// have thin legs and tails that must withstand a fall.
+/// Returns the material of a crayon with its colour. Biscuits are tougher than in a playground, because drawings have thin
+/// legs and tails that must withstand a fall.
 pub fn crayon(stuff: Stuff) -> MaterialText {
     let colour = match stuff {
         Stuff::Jelly => [240, 110, 130],
@@ -24,10 +24,10 @@ pub fn crayon(stuff: Stuff) -> MaterialText {
         Stuff::Clay => [150, 175, 110],
         Stuff::Stone => [140, 140, 150],
         Stuff::Caramel => [176, 96, 44],
+        Stuff::Dough => [246, 230, 202],
     };
     let material = stuff.material();
     let [strength, toughness] = match stuff {
-        Stuff::Jelly => [Some(4000.0), Some(500.0)],
         Stuff::Biscuit => [Some(6000.0), Some(450.0)],
         _ => [material.strength, material.toughness],
     };

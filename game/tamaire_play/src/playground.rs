@@ -34,9 +34,10 @@ const EDGE: f32 = 0.35;
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stuff {
-    /// Soft and tough.
+    /// Soft, and trembles for long, like a gel of gelatine.
     Jelly,
-    /// Stiff, and does not tear.
+    /// Gives way at first and stiffens the more it is stretched or pressed, like silicone rubber. It bounces and does not
+    /// tear.
     Rubber,
     /// Stiff and brittle.
     Biscuit,
@@ -46,17 +47,20 @@ pub enum Stuff {
     Stone,
     /// Can be drawn out far, and keeps that shape.
     Caramel,
+    /// Resists a blow and creeps under a slow hand; what was pressed flat rises again within seconds.
+    Dough,
 }
 
 impl Stuff {
     /// All materials. Their numbers in added bodies follow this order, from 1.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Jelly,
         Self::Rubber,
         Self::Biscuit,
         Self::Clay,
         Self::Stone,
         Self::Caramel,
+        Self::Dough,
     ];
 
     /// Returns the number of the material in added bodies, which decides their colour.
@@ -68,22 +72,42 @@ impl Stuff {
     /// Returns the table of the material in a scene file, without a colour.
     pub fn material(self) -> MaterialText {
         let (young, tears) = match self {
-            Self::Jelly => (2500.0, Some([1200.0, 150.0])),
-            Self::Rubber => (9000.0, None),
+            Self::Jelly => (2500.0, Some([4000.0, 500.0])),
+            Self::Rubber => (7000.0, None),
             Self::Biscuit => (12_000.0, Some([1500.0, 120.0])),
             Self::Clay => (6000.0, Some([4000.0, 600.0])),
             Self::Stone => (20_000.0, None),
             Self::Caramel => (4000.0, Some([3000.0, 900.0])),
+            Self::Dough => (400.0, Some([2500.0, 600.0])),
+        };
+        let like = match self {
+            Self::Jelly => Some("gelatine-5"),
+            Self::Rubber => Some("pdms-rtv615"),
+            _ => None,
+        };
+        let prony = match self {
+            Self::Dough => vec![[8.0, 0.3]],
+            _ => Vec::new(),
         };
         let plastic = match self {
             Self::Clay => Some([0.05, 2.5]),
             Self::Caramel => Some([0.1, 4.0]),
             _ => None,
         };
+        let mass_damping = match self {
+            Self::Jelly | Self::Rubber => Some(1.0),
+            Self::Caramel => Some(12.0),
+            _ => None,
+        };
         MaterialText {
+            like: like.map(str::to_owned),
             young: Some(young),
-            density: (self == Self::Stone).then_some(300.0),
-            mass_damping: (self == Self::Caramel).then_some(12.0),
+            poisson: like.map(|_| 0.4),
+            prony,
+            density: (self == Self::Stone)
+                .then_some(300.0)
+                .or(like.map(|_| 100.0)),
+            mass_damping,
             strength: tears.map(|[strength, _]| strength),
             toughness: tears.map(|[_, toughness]| toughness),
             yield_strain: plastic.map(|[strain, _]| strain),

@@ -427,6 +427,7 @@ pub(super) const WORDS: Words = Words {
         Stuff::Clay => "Clay",
         Stuff::Stone => "Stone",
         Stuff::Caramel => "Caramel",
+        Stuff::Dough => "Dough",
     },
     add_form: |form| match form {
         Form::Ball | Form::Empty => "Add a ball",

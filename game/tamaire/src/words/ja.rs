@@ -434,6 +434,7 @@ pub(super) const WORDS: Words = Words {
         Stuff::Clay => "ねんど",
         Stuff::Stone => "石",
         Stuff::Caramel => "キャラメル",
+        Stuff::Dough => "パン生地",
     },
     add_form: |form| match form {
         Form::Ball | Form::Empty => "ボールを だす",

@@ -105,6 +105,7 @@ pub const PATH: &[PathLevel] = &[
     level!(5, "mirror-hands"),
     level!(5, "planet"),
     level!(5, "mochi"),
+    level!(5, "dough"),
     level!(5, "weightless"),
     level!(5, "tamaire"),
 ];

@@ -15,7 +15,7 @@ use tamaire_play::playground::Stuff;
 use tamaire_sound::Menu;
 
 /// Number of columns of crayons in a portrait window.
-const CRAYON_COLUMNS: usize = 3;
+const CRAYON_COLUMNS: usize = 4;
 /// Maximum height of a crayon with the gap below it [points].
 const CRAYON: f32 = 84.0;
 /// Length of the tip of a crayon [points].
