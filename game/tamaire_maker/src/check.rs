@@ -2,7 +2,8 @@
 //!
 //! The checks are computed in small portions, so that a screen can show their progress. They forbid nothing.
 
-use fuwafuwa::DEFAULT_TICK;
+use fuwafuwa::{DEFAULT_TICK, Dim, DimVector, JointKind, World};
+use fuwafuwa_scenes::scene::{JointKindText, JointText};
 use std::sync::Arc;
 use tamaire_play::bot::StraightPush;
 use tamaire_play::{AnyRound, Bot, BotKind, InputFrame, Level, Route};
@@ -17,6 +18,9 @@ const SEEDS: [u64; 2] = [1, 2];
 const STRAIGHT: f32 = 0.7;
 /// Speed of a small machine, as a share of this one.
 const SMALL: f64 = 0.5;
+/// Length by which a rope must be too short to be told [m]. An end on a body is in the middle of the nodes that it holds, which
+/// may be some centimetres from the stated point.
+const SHORT_ROPE: f32 = 0.05;
 /// Share of the ticks that must be computed in time.
 const IN_TIME: f64 = 0.99;
 
@@ -56,6 +60,8 @@ pub struct Findings {
     pub by_itself: Finding,
     /// Whether a machine half as fast as this one computes the level in real time.
     pub real_time: Finding,
+    /// Whether a rope is shorter than the distance of its ends at the start, so that it pulls hard or tears.
+    pub has_short_rope: bool,
 }
 
 /// Checks of a level in progress.
@@ -93,7 +99,10 @@ impl Check {
     pub fn new(level: Arc<Level>) -> Self {
         let (squeeze, shave) = (Player::Bot(BotKind::Squeeze), Player::Bot(BotKind::Shave));
         let mut left = Vec::new();
-        let mut findings = Findings::default();
+        let mut findings = Findings {
+            has_short_rope: has_short_rope(&level),
+            ..Findings::default()
+        };
         if level.has_basket() {
             for &seed in SEEDS.iter().rev() {
                 left.push((Player::Straight, seed));
@@ -242,6 +251,7 @@ impl Check {
             straight,
             by_itself,
             real_time,
+            ..
         } = &mut self.findings;
         for open in [squeezed, shaved, straight, by_itself] {
             if *open == Finding::Open {
@@ -259,10 +269,38 @@ impl Check {
     }
 }
 
+/// Returns whether the ends of a rope are farther apart than its length at the start.
+fn has_short_rope(level: &Arc<Level>) -> bool {
+    fn of<D: Dim>(world: &World<D>) -> bool {
+        let mut joints = world.joints();
+        joints.any(|(id, joint)| {
+            let JointKind::Rope { length } = joint.definition().kind else {
+                return false;
+            };
+            let ends = world.joint_anchor_positions(id).ok().flatten();
+            ends.is_some_and(|[from, to]| {
+                from.to_vec3().distance(to.to_vec3()) > length + SHORT_ROPE
+            })
+        })
+    }
+    let is_rope = |joint: &JointText| joint.kind == JointKindText::Rope;
+    if !level.scene().joint.iter().any(is_rope) {
+        return false;
+    }
+    match AnyRound::new(level.clone()) {
+        AnyRound::Plane(round) => of(round.world()),
+        AnyRound::Space(round) => of(round.world()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draft::Draft;
+    use crate::items::{Kind, add};
+    use fuwafuwa::Vec3;
     use std::cell::Cell;
+    use tamaire_play::level::built_in;
 
     /// Checks a level to the end, with ticks that seem to take `seconds`.
     fn checked(id: &str, seconds: f64) -> Check {
@@ -334,5 +372,21 @@ mod tests {
             assert_eq!(finding, Finding::NotAsked);
         }
         assert_eq!(check.progress(), 1.0);
+    }
+
+    #[test]
+    fn rope_that_is_too_short_is_told() {
+        for (short, expected) in [(0.0, false), (0.2, true)] {
+            let mut scene = Draft::blank(2).scene().clone();
+            add(&mut scene, Kind::Rope, Vec3::ZERO);
+            let length = scene.joint[0].length.as_mut().unwrap();
+            *length -= short;
+            let level = Arc::new(Level::from_scene("roped", scene).unwrap());
+            assert_eq!(Check::new(level).findings().has_short_rope, expected);
+        }
+        for (id, _) in built_in() {
+            let level = Arc::new(Level::open(id).unwrap());
+            assert!(!has_short_rope(&level), "{id}");
+        }
     }
 }

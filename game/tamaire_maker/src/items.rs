@@ -16,8 +16,9 @@ mod movement;
 mod removal;
 #[cfg(test)]
 pub(crate) mod tests;
+mod ties;
 
-pub use additions::{Kind, add};
+pub use additions::{Kind, add, add_to};
 pub use arrangement::{Guide, aligned, free_place, snapped};
 pub use bounds::{bounds, union};
 pub use clip::{Clip, copy, paste};
@@ -26,6 +27,7 @@ use groups::is_pinned;
 pub use layers::{Stops, set_stops, stops_of};
 pub use movement::{rotate, stretch, translate};
 pub use removal::{Dropped, Removed, remove};
+pub use ties::{ends_of, first_hit, holder_at, tie_end};
 
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
@@ -33,7 +35,7 @@ use fuwafuwa_scenes::scene::{
     Form, HandText, JointAnchorText, JointKindText, KnifeText, MotionTypeText,
 };
 use goals::is_possible;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use tamaire_play::playground::Stuff;
 
 /// Maximum absolute coordinate of the middle of an item [m]. It is the limit of the view of a level.
@@ -145,7 +147,11 @@ pub fn kind_of(scene: &Scene, item: Item) -> Option<Kind> {
 
 fn kind_of_obstacle(scene: &Scene, index: usize) -> Option<Kind> {
     let text = scene.obstacle.get(index)?;
+    let mut knives = scene.knife.iter();
+    let has_knife = knives.any(|knife| knife.obstacle == Some(index + 1));
     Some(match stops_of(scene, index) {
+        _ if text.angular_velocity.is_some() && has_knife => Kind::Saw,
+        _ if !text.path.is_empty() && has_knife => Kind::Knife,
         _ if text.angular_velocity.is_some() => Kind::Paddle,
         _ if !text.path.is_empty() && text.switch.is_some() => Kind::Door,
         _ if !text.path.is_empty() => Kind::Lift,
@@ -155,6 +161,29 @@ fn kind_of_obstacle(scene: &Scene, index: usize) -> Option<Kind> {
         _ if text.capsule.is_some() => Kind::Bar,
         _ => Kind::Wall,
     })
+}
+
+/// Returns the number of each item among the items of its kind, counted from 1. Walls without an end, which cannot be seen
+/// in the editor, are counted apart.
+pub fn numbers(scene: &Scene) -> BTreeMap<Item, usize> {
+    let mut counts = BTreeMap::new();
+    let mut numbers = BTreeMap::new();
+    for item in items(scene) {
+        let kind = match kind_of(scene, item) {
+            Some(Kind::Body(..)) => Some(Kind::Body(Form::Ball, Stuff::Jelly)),
+            kind => kind,
+        };
+        let is_plane = match item {
+            Item::Obstacle(index) => scene.obstacle[index].half_space.is_some(),
+            Item::RigidBody(index) => scene.rigid_body[index].half_space.is_some(),
+            _ => false,
+        };
+        let kind = kind.and_then(|kind| Kind::ALL.iter().position(|known| *known == kind));
+        let count = counts.entry((kind, is_plane)).or_insert(0);
+        *count += 1;
+        numbers.insert(item, *count);
+    }
+    numbers
 }
 
 /// Returns those of the items that the scene has, without repetitions.

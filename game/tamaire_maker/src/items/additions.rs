@@ -3,7 +3,8 @@
 use super::bounds::grid_size;
 use super::clip::add_basket;
 use super::layers::{Stops, set_stops};
-use super::movement::{room_of, translate};
+use super::movement::{room_of, span, translate};
+use super::ties::{anchor_on, fixed, holder_at};
 use super::{Item, MAX_COORDINATE, bounds, first_leader, flat, player_count, rounded, union};
 use crate::palette::{crayon, number_in};
 use fuwafuwa::Vec3;
@@ -25,11 +26,11 @@ const BODY_VOXELS: [usize; 2] = [32, 10];
 /// Radius of a new hand if the level has none to copy [m].
 const HAND_RADIUS: f32 = 0.09;
 
-/// Distance up to which a rope or a spring is tied to a body [m]. Farther away it is tied to the first hand.
-const TIE_REACH: f32 = 1.0;
+/// Distance of the fixed end of a new rope or spring from the thing to which it is tied [m].
+const TIE_LENGTH: f32 = 0.35;
 
-/// Radius within which a new joint holds the nodes of a body [m].
-const TIE_RADIUS: f32 = 0.06;
+/// Minimum length of a new rope or spring [m].
+const LEAST_TIE: f32 = 0.1;
 
 /// Something that can be added to a level.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -52,11 +53,11 @@ pub enum Kind {
     Plank,
     /// Free board that turns about its middle.
     SeeSaw,
-    /// Rope from a fixed point to the nearest body. If none is near, it is a leash on the first hand.
+    /// Rope from a fixed point to a body.
     Rope,
-    /// Spring from a fixed point to the nearest body. If none is near, it is on the first hand.
+    /// Spring from a fixed point to a body.
     Spring,
-    /// Pin that holds the nearest body to a fixed point in it.
+    /// Pin that holds a body to a fixed point in it.
     Pin,
     /// Obstacle that rises while something lies on its switch, and the switch.
     Door,
@@ -114,17 +115,29 @@ impl Kind {
 /// Adds something of a usual size at a position [m], which is brought into the room. Returns the new items. Returns no items
 /// and changes nothing if the level cannot have it: a hand of a third player, a ninth basket, a basket in a scene that is no
 /// level, a joint without a body or hand to hold, or a body whose material has no space.
+///
+/// A rope, spring or pin is tied to the body that is nearest to the position.
 pub fn add(scene: &mut Scene, kind: Kind, at: Vec3) -> Vec<Item> {
+    add_to(scene, kind, at, None)
+}
+
+/// Adds something as [`add`] does. A rope, spring or pin is tied to `holder` if that is a body, a rigid body or a hand.
+pub fn add_to(scene: &mut Scene, kind: Kind, at: Vec3, holder: Option<Item>) -> Vec<Item> {
     if !at.is_finite() || !has_space(scene) {
         return Vec::new();
     }
     let at = in_view(scene, at);
-    let items = made(scene, kind, at);
+    let items = match kind {
+        Kind::Rope => add_tie(scene, at, JointKindText::Rope, holder),
+        Kind::Spring => add_tie(scene, at, JointKindText::Spring, holder),
+        Kind::Pin => add_pin(scene, at, holder),
+        _ => made(scene, kind, at),
+    };
     bring_inside(scene, &items);
     items
 }
 
-/// Adds something at a position in the view. Parts of it may be outside.
+/// Adds something other than a rope, spring or pin at a position in the view. Parts of it may be outside.
 fn made(scene: &mut Scene, kind: Kind, at: Vec3) -> Vec<Item> {
     match kind {
         Kind::Body(form, stuff) => add_body(scene, form, stuff, at),
@@ -139,9 +152,7 @@ fn made(scene: &mut Scene, kind: Kind, at: Vec3) -> Vec<Item> {
         Kind::Basket => add_basket_with_bars(scene, at),
         Kind::Plank => add_plank(scene, at, [0.3, 0.03, 0.12]),
         Kind::SeeSaw => add_see_saw(scene, at),
-        Kind::Rope => add_tie(scene, at, JointKindText::Rope),
-        Kind::Spring => add_tie(scene, at, JointKindText::Spring),
-        Kind::Pin => add_pin(scene, at),
+        Kind::Rope | Kind::Spring | Kind::Pin => Vec::new(),
         Kind::Door => add_door(scene, at),
         Kind::Lift => add_lift(scene, at),
         Kind::Paddle => add_paddle(scene, at),
@@ -211,7 +222,7 @@ fn swept(scene: &Scene, item: Item) -> Option<[Vec3; 2]> {
 }
 
 /// Returns the part of the view that is inside the planes along the axes, which are the walls of a room [m].
-fn walls(scene: &Scene) -> [Vec3; 2] {
+pub(super) fn walls(scene: &Scene) -> [Vec3; 2] {
     let [mut low, mut high] = scene.view.map(Vec3::from);
     let planes = scene.obstacle.iter();
     for plane in planes.filter_map(|text| text.half_space.as_ref()) {
@@ -378,16 +389,13 @@ fn add_see_saw(scene: &mut Scene, at: Vec3) -> Vec<Item> {
             point,
             ..JointAnchorText::default()
         };
-        items.extend(add_joint(scene, JointKindText::Pin, [fixed(point), board]));
+        items.extend(add_joint(
+            scene,
+            JointKindText::Pin,
+            [fixed(Vec3::from(point)), board],
+        ));
     }
     items
-}
-
-fn fixed(point: [f32; 3]) -> JointAnchorText {
-    JointAnchorText {
-        point,
-        ..JointAnchorText::default()
-    }
 }
 
 /// Adds a joint. A rope or spring is as long as the distance between its anchors.
@@ -396,85 +404,87 @@ fn add_joint(
     kind: JointKindText,
     anchors: [JointAnchorText; 2],
 ) -> Option<Item> {
-    let [from, to] = [&anchors[0], &anchors[1]].map(|anchor| Vec3::from(anchor.point));
     let is_spring = kind == JointKindText::Spring;
     let is_pin = kind == JointKindText::Pin;
-    scene.joint.push(JointText {
+    let mut joint = JointText {
         kind,
         anchors: anchors.into(),
         stiffness: is_spring.then_some(200.0),
         damping: is_spring.then_some(20.0),
-        length: (!is_pin).then(|| rounded(from.distance(to)).max(0.05)),
+        length: None,
         breaking_force: (!is_pin).then_some(600.0),
         switch: None,
-    });
+    };
+    joint.length = (!is_pin).then(|| rounded(span(&joint)).max(0.05));
+    scene.joint.push(joint);
     Some(Item::Joint(scene.joint.len() - 1))
 }
 
-/// Body that is nearest to a position.
-struct Nearest {
-    index: usize,
-    /// Point in the body, near the position [m].
-    point: Vec3,
-    /// Distance of this point from the position [m].
-    distance: f32,
-}
-
-fn nearest_body(scene: &Scene, at: Vec3) -> Option<Nearest> {
-    let found = (0..scene.body.len()).filter_map(|index| {
-        let [low, high] = bounds(scene, Item::Body(index))?;
-        // Stays inside the outline of round bodies.
-        let margin = (high - low) * 0.25;
-        let point = at.max(low + margin).min(high - margin);
-        let distance = point.distance(at);
-        Some(Nearest {
-            index,
-            point,
-            distance,
-        })
+/// Returns the body that is nearest to a position.
+fn nearest_body(scene: &Scene, at: Vec3) -> Option<Item> {
+    let found = (0..scene.body.len()).map(Item::Body).filter_map(|item| {
+        let [low, high] = bounds(scene, item)?;
+        Some((item, at.clamp(low, high).distance(at)))
     });
-    found.min_by(|a, b| a.distance.total_cmp(&b.distance))
+    let nearest = found.min_by(|a, b| a.1.total_cmp(&b.1));
+    nearest.map(|(item, _)| item)
 }
 
-fn on_body(body: &Nearest) -> JointAnchorText {
-    JointAnchorText {
-        body: Some(body.index + 1),
-        point: numbers(body.point),
-        radius: Some(TIE_RADIUS),
-        ..JointAnchorText::default()
+/// Returns the thing to which a new joint is tied: `holder` if it can be moved, or the nearest body, or the first hand.
+fn holder_for(scene: &Scene, at: Vec3, holder: Option<Item>) -> Option<Item> {
+    let can_hold = |item: &Item| {
+        matches!(item, Item::Body(_) | Item::RigidBody(_) | Item::Hand(_)) && item.is_in(scene)
+    };
+    holder
+        .filter(can_hold)
+        .or_else(|| nearest_body(scene, at))
+        .or_else(|| first_leader(scene).map(Item::Hand))
+}
+
+/// Adds a rope or a spring from a fixed point near a thing to the thing. The fixed point is above the thing where there is room.
+fn add_tie(scene: &mut Scene, at: Vec3, kind: JointKindText, holder: Option<Item>) -> Vec<Item> {
+    let Some(holder) = holder_for(scene, at, holder) else {
+        return Vec::new();
+    };
+    let Some([low, high]) = bounds(scene, holder) else {
+        return Vec::new();
+    };
+    let middle = 0.5 * (low + high);
+    let [least, most] = walls(scene);
+    let ways = [Vec3::Y, Vec3::X, Vec3::NEG_X, Vec3::NEG_Y];
+    let mut places: Vec<(Vec3, Vec3)> = Vec::new();
+    for way in ways {
+        let end = middle + way * (0.5 * (high - low) + Vec3::splat(TIE_LENGTH));
+        let end = flat(scene.dim, end.max(least).min(most.max(least)));
+        places.push((end, middle + way * 0.3 * (high - low)));
     }
-}
-
-/// Adds a rope or a spring from a fixed point to the nearest body. If no body is near, it ties the first hand.
-fn add_tie(scene: &mut Scene, at: Vec3, kind: JointKindText) -> Vec<Item> {
-    let near = nearest_body(scene, at).filter(|body| body.distance <= TIE_REACH);
-    let (anchor, from) = match (near, first_leader(scene)) {
-        (Some(body), _) => (on_body(&body), body.point),
-        (None, Some(hand)) => {
-            let place = scene.hand[hand].target(0.0);
-            let anchor = JointAnchorText {
-                hand: Some(hand + 1),
-                point: place,
-                ..JointAnchorText::default()
-            };
-            (anchor, Vec3::from(place))
-        }
-        (None, None) => return Vec::new(),
-    };
-    let end = match at.distance(from) >= 0.1 {
-        true => at,
-        false => in_view(scene, from + Vec3::Y * 0.4),
-    };
-    let joint = add_joint(scene, kind, [fixed(numbers(end)), anchor]);
+    let away = |end: Vec3| end.distance(end.clamp(low, high));
+    let has_room = |end: Vec3| away(end) >= LEAST_TIE && holder_at(scene, end).is_none();
+    let free = places.iter().find(|(end, _)| has_room(*end));
+    let farthest = || places.iter().max_by(|a, b| away(a.0).total_cmp(&away(b.0)));
+    let found = free.or_else(farthest).and_then(|&(end, from)| {
+        let anchor = anchor_on(scene, holder, from)?;
+        Some([fixed(end), anchor])
+    });
+    let joint = found.and_then(|anchors| add_joint(scene, kind, anchors));
     joint.into_iter().collect()
 }
 
-fn add_pin(scene: &mut Scene, at: Vec3) -> Vec<Item> {
-    let Some(body) = nearest_body(scene, at) else {
+fn add_pin(scene: &mut Scene, at: Vec3, holder: Option<Item>) -> Vec<Item> {
+    let Some(holder) = holder_for(scene, at, holder) else {
         return Vec::new();
     };
-    let anchor = on_body(&body);
-    let joint = add_joint(scene, JointKindText::Pin, [fixed(anchor.point), anchor]);
+    let Some([low, high]) = bounds(scene, holder) else {
+        return Vec::new();
+    };
+    // Stays inside the outline of round bodies.
+    let margin = (high - low) * 0.25;
+    let place = at.clamp(low + margin, high - margin);
+    let Some(anchor) = anchor_on(scene, holder, place) else {
+        return Vec::new();
+    };
+    let ends = [fixed(Vec3::from(anchor.point)), anchor];
+    let joint = add_joint(scene, JointKindText::Pin, ends);
     joint.into_iter().collect()
 }
 

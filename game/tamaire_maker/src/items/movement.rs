@@ -9,8 +9,8 @@ use super::{
 use fuwafuwa::{Rotation, Vec3};
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{
-    BodyText, BoxText, FieldText, HandText, KnifeText, MAX_RIGID, ObstacleText, PartText,
-    RigidBodyText,
+    BodyText, BoxText, FieldText, HandText, JointKindText, JointText, KnifeText, MAX_RIGID,
+    ObstacleText, PartText, RigidBodyText,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,11 +23,15 @@ const MIN_VOXEL: f32 = 0.001;
 /// Share of the view that a hand may take on each axis.
 const HAND_SHARE: f32 = 0.9;
 
+/// Difference of distances that comes from rounding [m].
+const SAME_DISTANCE: f32 = 1e-4;
+
 /// Motion of each item.
 type Moves = BTreeMap<Item, Moved>;
 
 /// Moves items, and everything that is fixed to them: anchors of joints, knives, pivots, and hands that follow a moved one.
-/// A joint moves only its anchors that are fixed points. The first point of the hint moves with the first hand.
+/// A joint moves only its anchors that are fixed points. A rope whose ends move apart or together keeps its slack. The first
+/// point of the hint moves with the first hand.
 ///
 /// The middle of each item stays within [`MAX_COORDINATE`], and all items move by the same vector. A body that is given by
 /// its state cannot be moved.
@@ -227,6 +231,7 @@ fn move_hint(scene: &mut Scene, moves: &Moves) {
 fn move_joints(scene: &mut Scene, moves: &Moves) {
     for (index, joint) in scene.joint.iter_mut().enumerate() {
         let own = moves.get(&Item::Joint(index));
+        let before = (span(joint), joint.length);
         let mut all_held = true;
         for anchor in &mut joint.anchors {
             let holder = holder_of_anchor(anchor);
@@ -243,6 +248,35 @@ fn move_joints(scene: &mut Scene, moves: &Moves) {
         if let (Some(moved), Some(length)) = (own.or(any), &mut joint.length) {
             moved.length(length, SIZES[0], 2.0 * SIZES[1]);
         }
+        if joint.kind == JointKindText::Rope {
+            keep_slack(joint, before);
+        }
+    }
+}
+
+/// Returns the distance between the anchors of a joint [m].
+pub(super) fn span(joint: &JointText) -> f32 {
+    match &joint.anchors[..] {
+        [from, to] => Vec3::from(from.point).distance(Vec3::from(to.point)),
+        _ => 0.0,
+    }
+}
+
+/// Changes the length of a joint by as much as the distance between its anchors has changed. `before` are this distance and
+/// the length before [m]. A rope that is shorter than the distance would tear at the start, so it has at least no slack. A
+/// length that was stretched stays, if it is long enough.
+pub(super) fn keep_slack(joint: &mut JointText, (distance, length): (f32, Option<f32>)) {
+    let (now, is_rope) = (span(joint), joint.kind == JointKindText::Rope);
+    let (Some(before), Some(after)) = (length, &mut joint.length) else {
+        return;
+    };
+    let has_moved = (now - distance).abs() > SAME_DISTANCE;
+    if has_moved && *after == before {
+        let least = if is_rope { 0.0 } else { f32::NEG_INFINITY };
+        let slack = (before - distance).max(least);
+        *after = rounded(now + slack).max(SIZES[0]);
+    } else if is_rope && has_moved && *after < now {
+        *after = rounded(now);
     }
 }
 

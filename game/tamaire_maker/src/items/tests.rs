@@ -963,3 +963,198 @@ fn angles_of_rotated_bodies_add_up() {
         assert!(made.apply(axis).distance(expected) < 1e-5);
     }
 }
+
+/// Returns a blank level with a rope from its body to a place above it.
+fn roped(dim: u8) -> Scene {
+    let mut scene = Draft::blank(dim).scene().clone();
+    let rope = add_to(&mut scene, Kind::Rope, Vec3::ZERO, Some(Item::Body(0)));
+    assert_eq!(rope, [Item::Joint(0)]);
+    scene
+}
+
+/// Returns the number of joints that are left after some ticks without a hand.
+fn joints_after(scene: &Scene, ticks: usize) -> usize {
+    let level = Level::from_scene("roped", scene.clone()).unwrap();
+    let mut round = AnyRound::new(Arc::new(level));
+    for _ in 0..ticks {
+        round.step(InputFrame::default());
+    }
+    match round {
+        AnyRound::Plane(round) => round.world().joints().count(),
+        AnyRound::Space(round) => round.world().joints().count(),
+    }
+}
+
+#[test]
+fn rope_follows_what_is_moved_and_is_whole_in_the_round() {
+    for dim in [2, 3] {
+        let start = roped(dim);
+        let length = |scene: &Scene| scene.joint[0].length.unwrap();
+        let span = |scene: &Scene| super::movement::span(&scene.joint[0]);
+        let slack = 0.07;
+        let mut loose = start.clone();
+        loose.joint[0].length = Some(span(&start) + slack);
+        for item in [Item::Body(0), Item::Joint(0)] {
+            for by in [Vec3::X * -0.4, Vec3::Y * 0.2, Vec3::X * 0.4] {
+                let mut scene = start.clone();
+                translate(&mut scene, &[item], by);
+                assert!((length(&scene) - span(&scene)).abs() < 1e-4, "{item:?}");
+                assert_eq!(joints_after(&scene, 30), 1, "{item:?} moved by {by}");
+                let mut scene = loose.clone();
+                translate(&mut scene, &[item], by);
+                assert!((length(&scene) - span(&scene) - slack).abs() < 1e-4);
+            }
+        }
+        let mut turned = start.clone();
+        rotate(
+            &mut turned,
+            &[Item::Body(0)],
+            Vec3::new(0.0, 0.3, 0.0),
+            Vec3::Z,
+            2.0,
+        );
+        assert!(length(&turned) > span(&turned) - 1e-4);
+        assert_eq!(joints_after(&turned, 30), 1);
+        let mut together = start.clone();
+        translate(
+            &mut together,
+            &[Item::Body(0), Item::Joint(0)],
+            Vec3::X * 0.2,
+        );
+        assert_eq!(length(&together), length(&start));
+        // A rope that is too short becomes whole when it is moved.
+        let mut short = start.clone();
+        short.joint[0].length = Some(0.05);
+        translate(&mut short, &[Item::Joint(0)], Vec3::X * 0.2);
+        assert_eq!(joints_after(&short, 30), 1);
+    }
+}
+
+#[test]
+fn new_rope_is_tied_to_the_chosen_or_nearest_body_however_far() {
+    for dim in [2, 3] {
+        let mut scene = Draft::blank(dim).scene().clone();
+        let other = add(&mut scene, Kind::ALL[0], Vec3::new(1.0, -0.3, 0.0));
+        let board = add(&mut scene, Kind::Plank, Vec3::new(0.5, 0.4, 0.0));
+        for (at, holder, expected) in [
+            (Vec3::X * -3.9, None, Item::Body(0)),
+            (Vec3::X * -3.9, Some(other[0]), other[0]),
+            (Vec3::X * -3.9, Some(board[0]), board[0]),
+            (Vec3::X * -3.9, Some(Item::Hand(0)), Item::Hand(0)),
+            (Vec3::X * -3.9, Some(Item::Obstacle(0)), Item::Body(0)),
+        ] {
+            for kind in [Kind::Rope, Kind::Spring, Kind::Pin] {
+                let mut scene = scene.clone();
+                let made = add_to(&mut scene, kind, at, holder);
+                assert_eq!(made, [Item::Joint(0)]);
+                let joint = &scene.joint[0];
+                let holders: Vec<Item> = { joint.anchors.iter() }
+                    .filter_map(holder_of_anchor)
+                    .collect();
+                assert_eq!(holders, [expected], "{kind:?}");
+                if kind != Kind::Pin {
+                    let [end, tied] = [0, 1].map(|end| Vec3::from(joint.anchors[end].point));
+                    assert!(
+                        end.y > tied.y + 0.1,
+                        "{kind:?} hangs from above: {end} {tied}"
+                    );
+                    assert_eq!(holder_at(&scene, end), None);
+                }
+                assert_eq!(joints_after(&scene, 10), 1, "{kind:?} on {expected:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn end_of_a_rope_is_tied_to_what_it_is_dropped_on() {
+    let mut scene = roped(2);
+    let paddle = add(&mut scene, Kind::Paddle, Vec3::new(0.8, 0.4, 0.0))[0];
+    let bar = add(&mut scene, Kind::Bar, Vec3::new(-0.8, 0.5, 0.0))[0];
+    let board = add(&mut scene, Kind::Plank, Vec3::new(0.8, -0.3, 0.0))[0];
+    let middle = |item| {
+        let [low, high] = bounds(&scene, item).unwrap();
+        0.5 * (low + high)
+    };
+    let hand = Item::Hand(0);
+    let places = [paddle, bar, board, hand, Item::Body(0)].map(|item| (Some(item), middle(item)));
+    let nothing = (None, Vec3::new(0.0, 0.75, 0.0));
+    for (holder, at) in places.into_iter().chain([nothing]) {
+        let mut scene = scene.clone();
+        assert!(tie_end(&mut scene, 0, 0, at), "{holder:?}");
+        let anchor = &scene.joint[0].anchors[0];
+        assert_eq!(holder_of_anchor(anchor), holder);
+        assert_eq!(anchor.radius.is_some(), anchor.body.is_some());
+        let joint = &scene.joint[0];
+        let slack = joint.length.unwrap() - super::movement::span(joint);
+        assert!(slack > -1e-4, "{holder:?}: {slack}");
+        assert_eq!(joints_after(&scene, 10), 1, "{holder:?}");
+    }
+    // The room has walls.
+    assert!(tie_end(&mut scene, 0, 0, Vec3::new(-30.0, 30.0, 0.0)));
+    let [low, high] = scene.view.map(Vec3::from);
+    let end = Vec3::from(scene.joint[0].anchors[0].point);
+    assert!(end.cmpge(low).all() && end.cmple(high).all(), "{end}");
+    // A rope that holds nothing is none, and neither is one that ties a board to itself.
+    let before = scene.clone();
+    assert!(!tie_end(&mut scene, 0, 1, nothing.1));
+    assert_eq!(scene, before);
+    let on_board = Vec3::new(0.8, -0.3, 0.0);
+    assert!(tie_end(&mut scene, 0, 0, on_board));
+    let before = scene.clone();
+    assert!(!tie_end(&mut scene, 0, 1, on_board + Vec3::X * 0.1));
+    assert_eq!(scene, before);
+}
+
+#[test]
+fn hole_of_a_ring_is_no_place_to_tie_a_rope() {
+    let mut scene = Draft::blank(2).scene().clone();
+    let ring = add(
+        &mut scene,
+        Kind::Body(Form::Ring, Stuff::Jelly),
+        Vec3::Y * 0.4,
+    )[0];
+    let [low, high] = bounds(&scene, ring).unwrap();
+    let middle = 0.5 * (low + high);
+    assert_eq!(holder_at(&scene, middle), None);
+    assert_eq!(holder_at(&scene, middle.with_x(low.x + 0.05)), Some(ring));
+}
+
+#[test]
+fn ray_hits_the_first_thing() {
+    let scene = Draft::blank(3).scene().clone();
+    let [low, high] = bounds(&scene, Item::Body(0)).unwrap();
+    let from = (0.5 * (low + high)).with_z(high.z + 2.0);
+    let hit = first_hit(&scene, (from, Vec3::NEG_Z), 5.0).unwrap();
+    assert_eq!(holder_at(&scene, hit), Some(Item::Body(0)));
+    assert!((hit.z - high.z).abs() < 0.1, "{hit}");
+    assert_eq!(first_hit(&scene, (from, Vec3::Z), 5.0), None);
+}
+
+#[test]
+fn things_are_numbered_by_kind() {
+    let mut scene = Draft::blank(2).scene().clone();
+    let kinds = [
+        Kind::Wall,
+        Kind::Saw,
+        Kind::Rope,
+        Kind::Wall,
+        Kind::Paddle,
+        Kind::Saw,
+    ];
+    let made: Vec<Item> = kinds
+        .map(|kind| add(&mut scene, kind, Vec3::ZERO)[0])
+        .into();
+    let numbers = numbers(&scene);
+    assert_eq!(
+        made.iter().map(|item| numbers[item]).collect::<Vec<_>>(),
+        [1, 1, 1, 2, 1, 2]
+    );
+    assert_eq!(
+        made.iter()
+            .filter_map(|&item| kind_of(&scene, item))
+            .collect::<Vec<_>>(),
+        kinds
+    );
+    assert_eq!(numbers[&Item::Body(0)], 1);
+}
