@@ -198,11 +198,16 @@ impl View {
         ((self.to_screen(at).x - self.rect.center().x) / half).clamp(-1.0, 1.0)
     }
 
+    /// Returns the position of the camera [m] and the unit vector from it through a screen position. `None` in 2D.
+    pub fn ray(&self, at: Pos2) -> Option<(Vec3, Vec3)> {
+        let point = at - self.rect.min;
+        let camera = self.space.as_ref()?;
+        Some(camera.ray([point.x, point.y], pixels(self.rect)))
+    }
+
     /// Returns the world point [m] at a screen position; in 3D on the horizontal plane at `height` [m].
     pub fn to_world(&self, at: Pos2, height: f32) -> Vec3 {
-        if let Some(camera) = &self.space {
-            let point = at - self.rect.min;
-            let (eye, towards) = camera.ray([point.x, point.y], pixels(self.rect));
+        if let Some((eye, towards)) = self.ray(at) {
             // Limits the distance to `FAR` if the ray does not hit the plane.
             let reach = (height - eye.y) / towards.y;
             let reach = if reach > 0.0 { reach.min(FAR) } else { FAR };

@@ -91,6 +91,8 @@ pub enum Drag {
     Stretch(Vec3, Vec3),
     /// Turns the selection about a point [m], with the handle at another one.
     Turn(Vec3, Vec3),
+    /// Moves an end of a rope or spring: the index of the joint, that of the end, and its position before [m].
+    End(usize, usize, Vec3),
     /// Selects what is in a frame, from a point [m].
     Frame(Vec3),
 }
@@ -456,8 +458,14 @@ impl Game {
 
     /// Returns the name of an item of the level that is being edited.
     pub fn item_name(&self, item: Item) -> String {
+        let number = items::numbers(self.maker.draft.scene()).remove(&item);
+        self.numbered_name(item, number.unwrap_or(item.number()))
+    }
+
+    /// Returns the name of an item with its number among the items of its kind, see [`items::numbers`].
+    pub fn numbered_name(&self, item: Item, number: usize) -> String {
         let kind = items::kind_of(self.maker.draft.scene(), item);
-        (self.making().item_name)(kind, item.number())
+        (self.making().item_name)(kind, number)
     }
 
     /// Selects nothing.
@@ -476,30 +484,18 @@ impl Game {
         self.settle();
     }
 
-    /// Adds something where there is most room, and selects it.
+    /// Adds something where there is most room, and selects it. A rope, spring or pin is tied to the selected thing, or to a
+    /// body.
     pub fn add_thing(&mut self, kind: Kind) {
         let place = items::free_place(self.maker.draft.scene());
-        self.change_and_select(|scene| items::add(scene, kind, place));
+        let mut selected = self.maker.editor.selection.iter().copied();
+        let holder = selected
+            .find(|item| matches!(item, Item::Body(_) | Item::RigidBody(_) | Item::Hand(_)));
+        self.change_and_select(|scene| items::add_to(scene, kind, place, holder));
         // The things to add stay where they are, so that a second press does not meet another button.
         self.maker.editor.part = EditorPart::Things;
         if self.maker.editor.selection.is_empty() {
             self.notify(self.making().not_pasted.to_string());
-        }
-        self.tell_of_leash(kind);
-    }
-
-    /// Tells that a new rope or spring is tied to the hand, which a player may not expect.
-    fn tell_of_leash(&mut self, kind: Kind) {
-        let scene = self.maker.draft.scene();
-        let is_on_hand = self.maker.editor.selection.iter().any(|item| match item {
-            Item::Joint(index) => {
-                let mut ends = scene.joint[*index].anchors.iter();
-                ends.any(|end| end.hand.is_some())
-            }
-            _ => false,
-        });
-        if is_on_hand && matches!(kind, Kind::Rope | Kind::Spring) {
-            self.notify(self.making().on_hand.to_string());
         }
     }
 

@@ -22,6 +22,7 @@ mod rewind;
 mod shelf;
 mod space;
 mod stand;
+mod ties;
 mod told;
 mod toys;
 mod window;

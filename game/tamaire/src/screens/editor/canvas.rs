@@ -11,6 +11,7 @@ use egui::{
     Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 use fuwafuwa::Vec3;
+use fuwafuwa_scenes::Scene;
 use tamaire_maker::items::snapped;
 use tamaire_maker::items::{self, Item};
 use tamaire_sound::Menu;
@@ -47,8 +48,10 @@ pub(super) fn show(game: &mut Game, ui: &mut Ui, room: Rect) {
         .collect();
     // The smallest items come last, so that they are above the others.
     places.sort_by(|a, b| b.1.area().total_cmp(&a.1.area()).then(a.0.cmp(&b.0)));
+    let numbers = items::numbers(scene);
     for (item, place) in places {
-        one(game, ui, &view, item, place);
+        let name = game.numbered_name(item, numbers[&item]);
+        one(game, ui, &view, (item, &name), place);
     }
     if view.space.is_some() {
         look_around(game, ui, room);
@@ -110,6 +113,7 @@ fn hint(game: &Game, ui: &Ui, room: Rect, is_space: bool) {
         None if is_space && editor.selection.is_empty() => {
             words.how_in_space[usize::from(has_touch)]
         }
+        None if selected_tie(game).is_some() => words.how_tied,
         None => return,
     };
     let theme = game.theme();
@@ -203,11 +207,10 @@ fn floor(game: &mut Game, ui: &mut Ui, room: Rect, view: &View) {
 }
 
 /// An item: a press selects it, a drag moves the selection.
-fn one(game: &mut Game, ui: &mut Ui, view: &View, item: Item, place: Rect) {
-    let name = game.item_name(item);
+fn one(game: &mut Game, ui: &mut Ui, view: &View, (item, name): (Item, &str), place: Rect) {
     let response = ui.interact(place, item_id(item), Sense::click_and_drag());
     let is_selected = game.maker.editor.is_selected(item);
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, &name));
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, name));
     let ink = game.theme().accent;
     let has_keys = is_on(ui, &response);
     if has_keys {
@@ -327,6 +330,14 @@ fn by_arrows(game: &mut Game, ui: &Ui, response: &Response) {
 /// Goes on with the drag that began on a widget.
 fn follow(game: &mut Game, ui: &Ui, view: &View, response: &Response) {
     if response.drag_stopped() {
+        if let (Some(drag @ Drag::End(..)), Some(at)) =
+            (game.maker.editor.drag, response.interact_pointer_pos())
+        {
+            let mut before = game.maker.draft.scene_before().clone();
+            if !tie(game, ui, view, drag, at)(&mut before) {
+                game.notify(game.making().needs_thing.to_string());
+            }
+        }
         if let (Some(Drag::Frame(from)), Some(at)) =
             (game.maker.editor.drag, response.interact_pointer_pos())
         {
@@ -378,6 +389,12 @@ fn follow(game: &mut Game, ui: &Ui, view: &View, response: &Response) {
             }));
             game.preview_level(|scene| items::stretch(scene, &selection, about, factors));
         }
+        Drag::End(..) => {
+            let tie = tie(game, ui, view, drag, at);
+            game.preview_level(|scene| {
+                tie(scene);
+            });
+        }
         Drag::Turn(about, handle) => {
             let now = under(game, view, at);
             let angle = |point: Vec3| (point.y - about.y).atan2(point.x - about.x);
@@ -409,8 +426,63 @@ fn select_in(game: &mut Game, view: &View, frame: Rect) {
     game.maker.editor.part = EditorPart::Selection;
 }
 
-/// Shows the handles around the selection in 2D: corners stretch, sides stretch along one axis, the one above turns.
+/// Returns the rope or spring that is selected alone, and the positions of its ends [m].
+fn selected_tie(game: &Game) -> Option<(usize, [Vec3; 2])> {
+    let &[item @ Item::Joint(joint)] = &game.maker.editor.selection[..] else {
+        return None;
+    };
+    let ends = items::ends_of(game.maker.draft.scene(), item)?;
+    Some((joint, ends))
+}
+
+/// Returns the change that ties the dragged end of a rope or spring to what is below the pointer, or fixes it in the room. It
+/// returns whether that is possible.
+fn tie(
+    game: &Game,
+    ui: &Ui,
+    view: &View,
+    drag: Drag,
+    at: Pos2,
+) -> impl Fn(&mut Scene) -> bool + use<> {
+    let Drag::End(joint, end, from) = drag else {
+        unreachable!("only a drag of an end ties it");
+    };
+    let scene = game.maker.draft.scene_before();
+    let [low, high] = scene.view.map(Vec3::from);
+    let most = |eye: Vec3| eye.distance(0.5 * (low + high)) + low.distance(high);
+    let hit = match view.ray(at) {
+        Some(ray) => items::first_hit(scene, ray, most(ray.0)),
+        None => Some(view.to_world(at, 0.0)).filter(|&to| items::holder_at(scene, to).is_some()),
+    };
+    let free = || {
+        let origin = ui.input(|input| input.pointer.press_origin()).unwrap_or(at);
+        let to = match view.space.is_some() && lifts(game, ui) {
+            true => from + (origin.y - at.y) / view.scale_at(from).max(1.0) * Vec3::Y,
+            false => view.to_world(at, from.y),
+        };
+        let snaps = game.maker.editor.snaps && !ui.input(|input| input.modifiers.alt);
+        if snaps { snapped(to, GRID) } else { to }
+    };
+    let to = hit.unwrap_or_else(free);
+    move |scene| items::tie_end(scene, joint, end, to)
+}
+
+/// Shows the handles of the selection. Those of a rope or spring are its ends.
 fn handles(game: &mut Game, ui: &mut Ui, view: &View) {
+    // While an end is dragged, its handle follows it.
+    let Some((joint, ends)) = selected_tie(game) else {
+        return frame_handles(game, ui, view);
+    };
+    let ink = game.theme().accent;
+    for (end, at) in ends.into_iter().enumerate() {
+        let name = ("end", end as i32, 0);
+        let drag = Drag::End(joint, end, at);
+        one_handle(game, ui, view, (name, view.to_screen(at)), drag, ink);
+    }
+}
+
+/// Shows the handles around the selection in 2D: corners stretch, sides stretch along one axis, the one above turns.
+fn frame_handles(game: &mut Game, ui: &mut Ui, view: &View) {
     let Some([low, high]) = game.selection_box().filter(|_| view.space.is_none()) else {
         return;
     };

@@ -6,6 +6,7 @@ use crate::words::{Language, MakingWords, Words};
 use app_shell::Theme;
 use app_shell::theme::PAGE;
 use egui::{Key, Rect, Ui, UiBuilder, vec2};
+use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{
     BasketText, BodyText, FieldText, HandText, JointKindText, JointText, MotionTypeText,
@@ -25,6 +26,10 @@ const SHARE: f32 = 0.48;
 const MARGIN: egui::Vec2 = vec2(14.0, 10.0);
 /// Width at which a row of options has several lines [points].
 const NARROW: f32 = 550.0;
+/// Step of the slider of the length of a rope or spring [m].
+const LENGTH_STEP: f32 = 0.05;
+/// Weight of a kilogram, as it is told to children [N].
+const WEIGHT: f32 = 10.0;
 /// Number of goals that can be set.
 const GOALS: usize = 3;
 
@@ -483,8 +488,19 @@ fn rigid_body(fields: &mut Fields, text: &mut RigidBodyText) {
 
 fn joint(fields: &mut Fields, text: &mut JointText, switches: usize) {
     let words = fields.words;
+    let is_rope = text.kind == JointKindText::Rope;
+    let ends: Vec<Vec3> = { text.anchors.iter() }
+        .map(|anchor| Vec3::from(anchor.point))
+        .collect();
     if let Some(length) = &mut text.length {
-        fields.slide(words.length, length, [0.05, 3.0, 0.05], " m");
+        // A rope that is shorter than the distance of its ends tears at the start.
+        let least = match ends[..] {
+            [from, to] if is_rope => LENGTH_STEP * (from.distance(to) / LENGTH_STEP).ceil(),
+            _ => 0.0,
+        };
+        let least = least.max(LENGTH_STEP);
+        let range = [least, least.max(3.0), LENGTH_STEP];
+        fields.slide(words.length, length, range, " m");
     }
     if text.kind == JointKindText::Spring {
         fields.slide_or(
@@ -495,12 +511,17 @@ fn joint(fields: &mut Fields, text: &mut JointText, switches: usize) {
             "",
         );
     }
+    let mut load = text.breaking_force.map(|force| force / WEIGHT);
+    let before = load;
     fields.slide_limit(
         (words.breaks_at, words.never_breaks),
-        &mut text.breaking_force,
-        [20.0, 2000.0, 20.0],
-        " N",
+        &mut load,
+        [2.0, 200.0, 2.0],
+        " kg",
     );
+    if load != before {
+        text.breaking_force = load.map(|load| load * WEIGHT);
+    }
     switch_number(fields, &mut text.switch, switches);
 }
 
