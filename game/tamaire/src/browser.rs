@@ -75,7 +75,7 @@ impl Running {
             won: { game.levels.iter() }
                 .filter(|level| {
                     game.records
-                        .of(&level.id)
+                        .of_level(level)
                         .is_some_and(|record| !record.best.is_empty())
                 })
                 .map(|level| level.id.clone())

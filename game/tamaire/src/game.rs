@@ -44,6 +44,7 @@ pub use making::{Cursor, DrawingTool, Flaws, Maker, WIDTHS};
 pub use notices::{Notice, Notices};
 pub use public::{EndedRound, PublicMode};
 pub use screen::{Screen, Screens};
+pub(crate) use sharing::is_made_here;
 pub use sharing::{MOST_NAME, credits};
 pub use shelf::{RoundDetails, SavedRound, SavedRounds};
 use std::collections::BTreeSet;

@@ -32,7 +32,7 @@ pub fn stars_of<'a>(
 impl Stars {
     /// Returns the stars of a level.
     pub fn of(level: &Level, records: &Records) -> Self {
-        let stars = || stars_of(level, records.of(&level.id));
+        let stars = || stars_of(level, records.of_level(level));
         Self {
             earned: stars().filter(|(_, is_earned)| *is_earned).count(),
             all: stars().count(),

@@ -1,11 +1,13 @@
 //! Best results of the players, by level.
 
+use crate::game::is_made_here;
 use crate::sift::sift;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use tamaire_play::{Joints, Level, Outcome, Route, Wish};
 
-/// Results in all levels, by level id.
+/// Results in all levels, by level id. A level that was made here can change and keeps its id, so its results belong to a
+/// version: the key is the id and the hash of the content. Results of older programs have the id alone.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Records(BTreeMap<String, Record>);
@@ -79,6 +81,14 @@ impl Record {
         all.into_iter().any(|best| !best.is_empty())
     }
 
+    /// Returns the shortest time [ticks], and whether the level was won with the whole body; `None` before a win.
+    pub fn shortest(&self) -> Option<(u64, bool)> {
+        let all = [&self.best, &self.best_assisted, &self.best_rewound];
+        let all = || all.into_iter().flatten();
+        let is_whole = all().any(|(route, _)| *route == Route::Squeeze);
+        Some((all().map(|(_, ticks)| *ticks).min()?, is_whole))
+    }
+
     /// Merges the better results of another record of the same level into this record.
     fn take(&mut self, other: Self) {
         for (route, ticks) in other.best {
@@ -91,6 +101,17 @@ impl Record {
             lower(&mut self.best_rewound, route, ticks);
         }
         self.wishes.extend(other.wishes);
+    }
+}
+
+/// Separator between the id of a level and the hash of its content.
+const VERSION: char = '@';
+
+/// Returns the key of the results in a level.
+fn key_of(level: &Level) -> String {
+    match is_made_here(&level.id) {
+        true => format!("{}{VERSION}{:016x}", level.id, level.content_hash()),
+        false => level.id.clone(),
     }
 }
 
@@ -114,16 +135,48 @@ impl Records {
         toml::to_string(self).expect("all fields can be written as TOML")
     }
 
-    /// Returns the results in a level, given by its id.
+    /// Returns the results in a level that cannot change, given by its id.
     pub fn of(&self, level: &str) -> Option<&Record> {
         self.0.get(level)
+    }
+
+    /// Returns the results in a level as it is now.
+    pub fn of_level(&self, level: &Level) -> Option<&Record> {
+        let version = self.0.get(&key_of(level));
+        // Without results of any version, those of an older program count.
+        let older = || match self.has_version(&level.id) {
+            true => None,
+            false => self.0.get(&level.id),
+        };
+        version.or_else(older)
+    }
+
+    /// Whether there are results of a version of a level, given by its id.
+    fn has_version(&self, id: &str) -> bool {
+        let first = format!("{id}{VERSION}");
+        let mut later = self.0.range(first.clone()..);
+        later.next().is_some_and(|(key, _)| key.starts_with(&first))
+    }
+
+    /// Notes that a level takes the place of another version of itself, or of none. Results of an older program stay with
+    /// the version before.
+    pub fn change(&mut self, before: Option<&Level>, level: &Level) {
+        let Some(older) = self.0.get(&level.id).cloned() else {
+            return;
+        };
+        if !self.has_version(&level.id)
+            && let Some(before) = before
+        {
+            self.0.insert(key_of(before), older);
+        }
+        self.0.entry(key_of(level)).or_default();
     }
 
     /// Records a win and returns whether it is the fastest win in its level by its route. `rewinds` is the number of
     /// times that time ran back in the round. A win with assists is only compared with other assisted wins, and it
     /// fulfils no wishes. A win with rewinds is only compared with other such wins.
     pub fn note(&mut self, level: &Level, outcome: &Outcome, rewinds: u32) -> bool {
-        let record = self.0.entry(level.id.clone()).or_default();
+        let record = self.0.entry(key_of(level)).or_default();
         if !level.game().assists.is_empty() {
             return lower(&mut record.best_assisted, outcome.route, outcome.ticks);
         }
@@ -263,5 +316,40 @@ mod tests {
         assert_eq!(refused.len(), 3, "{refused:?}");
         assert_eq!(records.of("a").unwrap().best[&Route::Squeeze], 10);
         assert_eq!(records.of("b").unwrap().wishes.len(), 1);
+    }
+
+    #[test]
+    fn results_of_an_older_program_stay_with_the_version_before() {
+        let version = |gravity: f32| {
+            let mut scene = Level::open("classic").unwrap().scene().clone();
+            scene.gravity[1] = gravity;
+            scene.game.as_mut().unwrap().name.en = format!("{gravity}");
+            Level::from_scene("my-level-1", scene).unwrap()
+        };
+        let [first, second] = [-2.0, -3.0].map(version);
+        let (mut records, _) = Records::read("[my-level-1]\nbest = { squeeze = 900 }\n");
+        assert_eq!(
+            records.of_level(&second).unwrap().best[&Route::Squeeze],
+            900
+        );
+        records.change(Some(&first), &second);
+        assert_eq!(
+            records.of_level(&first).unwrap().shortest(),
+            Some((900, true))
+        );
+        assert!(!records.of_level(&second).unwrap().is_won());
+        assert!(records.note(&second, &outcome(), 0));
+        records.change(Some(&second), &first);
+        // A merge with what was written before changes nothing.
+        let (mut merged, refused) = Records::read("[my-level-1]\nbest = { squeeze = 900 }\n");
+        merged.take(records.clone());
+        assert!(refused.is_empty());
+        assert_eq!(merged, records);
+        assert_eq!(Records::read(&records.text()).0, records);
+        // A name is no part of the content.
+        let mut renamed = first.scene().clone();
+        renamed.game.as_mut().unwrap().name.en = "other".into();
+        let renamed = Level::from_scene("my-level-1", renamed).unwrap();
+        assert_eq!(records.of_level(&renamed), records.of_level(&first));
     }
 }

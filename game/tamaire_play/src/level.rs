@@ -32,6 +32,8 @@ pub struct Level {
     /// The [`Start`] in the level's dimension. The world is built at first use and then copied, because
     /// copying is far faster than building.
     start: Arc<OnceLock<Box<dyn Any + Send + Sync>>>,
+    /// The [`Level::content_hash`], computed at first use.
+    content_hash: Arc<OnceLock<u64>>,
 }
 
 /// World at the start, baskets, and the tints of each body.
@@ -302,6 +304,7 @@ impl Level {
             scene,
             game,
             start,
+            content_hash: Arc::default(),
         };
         let possible = level.possible_routes();
         let stated = &level.game.routes;
@@ -404,6 +407,13 @@ impl Level {
     /// Returns a hash of the level, assists included. Equal hashes mean equal levels.
     pub fn hash(&self) -> u64 {
         hash_of(&self.scene)
+    }
+
+    /// Returns a hash of the level without assists and names. Levels with equal hashes differ only in names and assists.
+    pub fn content_hash(&self) -> u64 {
+        *self
+            .content_hash
+            .get_or_init(|| hash_of(&without_assists(without_names(&self.scene))))
     }
 
     /// Returns a copy of the world at the start, and the baskets.

@@ -49,7 +49,7 @@ impl Game {
     /// Whether the player has won every level of the path.
     pub fn has_won_path(&self) -> bool {
         let is_won = |&index: &usize| {
-            let record = self.records.of(&self.levels[index].id);
+            let record = self.records.of_level(&self.levels[index]);
             record.is_some_and(Record::is_won)
         };
         let path = self.path();

@@ -3,14 +3,16 @@
 use super::{Game, Maker, Screen, told};
 use crate::platform::{MOST_LEVELS, address_of_page};
 use crate::qr::Code;
+use crate::records::Record;
 use crate::words::MakingWords;
+use fuwafuwa::DEFAULT_TICK;
 use fuwafuwa_scenes::Scene;
 use std::sync::Arc;
 use tamaire_maker::check::Check;
 use tamaire_maker::draft::{Draft, Language, is_usual_name, name_in, set_name, without_number};
 use tamaire_play::level::{LevelError, MAX_KEPT_BYTES};
 use tamaire_play::pack::without_marks;
-use tamaire_play::{Level, Replay};
+use tamaire_play::{Level, Replay, Route};
 
 /// Maximum length of the name of a level or of its maker [characters].
 pub const MOST_NAME: usize = 40;
@@ -23,7 +25,7 @@ const MADE_HERE: &str = "my-level-";
 const BUDGET: (f64, [f64; 2]) = (0.6, [0.008, 0.15]);
 
 /// Whether a level with this id was made by the player of this game.
-pub(super) fn is_made_here(id: &str) -> bool {
+pub(crate) fn is_made_here(id: &str) -> bool {
     id.starts_with(MADE_HERE)
 }
 
@@ -35,13 +37,22 @@ pub(super) fn foreign_id(id: &str) -> String {
     }
 }
 
+/// Win of a level by its maker.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct MakerWin {
+    /// Shortest time [s].
+    pub seconds: f32,
+    /// Whether a round was won with the whole body.
+    pub is_whole: bool,
+}
+
 /// Summary of a level for the page *Finish*, computed once for each scene.
 pub struct Summary {
     scene: Arc<Scene>,
     /// The level, or why it cannot be played.
     pub level: Result<Arc<Level>, LevelError>,
-    /// Shortest time in which its maker has won it [s].
-    pub won: Option<f32>,
+    /// Win of its maker in a test.
+    won: Option<MakerWin>,
     /// QR code of the link to the level, and the name of the maker in it, after the code was shown. The inner `None` = the
     /// level is too large for a code.
     code: Option<(String, Option<Code>)>,
@@ -58,7 +69,10 @@ impl Maker {
             let won = won.and_then(|won| won.outcome);
             self.summary = Some(Summary {
                 scene: scene.clone(),
-                won: won.map(|outcome| outcome.seconds()),
+                won: won.map(|outcome| MakerWin {
+                    seconds: outcome.seconds(),
+                    is_whole: outcome.route == Route::Squeeze,
+                }),
                 level,
                 code: None,
             });
@@ -244,6 +258,8 @@ impl Game {
         self.check_text(&text)?;
         self.maker.draft = draft;
         let level = Arc::new(level);
+        let before = self.levels.iter().find(|known| known.id == level.id);
+        self.records.change(before.map(Arc::as_ref), &level);
         // A changed level keeps its place in the list.
         match self.levels.iter_mut().find(|known| known.id == level.id) {
             Some(known) => *known = level.clone(),
@@ -254,9 +270,41 @@ impl Game {
         // From now on, this is the player's own level.
         self.maker.origin = None;
         if let Some(won) = self.maker.win_of(&level) {
-            self.files.keep_best(&level, won);
+            self.note_kept_win(&level, won);
         }
+        self.files.keep_records(&self.records, &self.levels);
         Ok(())
+    }
+
+    /// Records the win of a level that its maker won in a test before the level was kept.
+    fn note_kept_win(&mut self, level: &Level, won: Replay) {
+        if let Some(outcome) = &won.outcome {
+            self.records.note(level, outcome, won.rewinds);
+        }
+        if won.rewinds == 0 {
+            self.files.keep_best(level, won);
+        }
+    }
+
+    /// Returns how the maker has won the level as it is now, in a test or from the list of levels.
+    pub fn win_of_maker(&mut self) -> Option<MakerWin> {
+        let is_own = self.maker.origin.is_none();
+        let summary = self.maker.summary();
+        let tested = summary.won;
+        let level = summary.level.as_ref().ok()?.clone();
+        let record = self.records.of_level(&level);
+        let record = record.filter(|_| is_own && is_made_here(&level.id));
+        let listed = record
+            .and_then(Record::shortest)
+            .map(|(ticks, is_whole)| MakerWin {
+                seconds: ticks as f32 * DEFAULT_TICK,
+                is_whole,
+            });
+        let both = tested.into_iter().chain(listed);
+        both.reduce(|one, other| MakerWin {
+            seconds: one.seconds.min(other.seconds),
+            is_whole: one.is_whole || other.is_whole,
+        })
     }
 
     /// Returns why the text of a level cannot be kept, in words for its maker.

@@ -64,7 +64,7 @@ impl Game {
         let is_won = |record: &Record| record.is_won();
         let is_known = self
             .records
-            .of(&self.bout.round().level().id)
+            .of_level(self.bout.round().level())
             .is_some_and(is_won);
         let is_due = is_open && !is_known && self.bout.lesson.wants_first_move();
         if is_due && self.bout.session.show_first_move() {
@@ -77,7 +77,7 @@ impl Game {
     pub fn may_show_way(&self) -> bool {
         let level = self.bout.round().level();
         let is_built_in = chapter_of(level).is_some() && self.listed(level).is_some();
-        let record = self.records.of(&level.id);
+        let record = self.records.of_level(level);
         let is_due = record.is_some_and(Record::is_won) || self.bout.lesson.may_see_way();
         is_built_in && is_due && !self.settings.calm
     }
@@ -86,7 +86,7 @@ impl Game {
     fn way_to_show(&self) -> Option<Way> {
         let level = self.bout.round().level();
         let known = PATH.iter().find(|known| known.id == level.id)?;
-        let record = self.records.of(&level.id);
+        let record = self.records.of_level(level);
         let wishes = &level.game().wish;
         let is_open = |number: &usize| {
             let wish = number.checked_sub(1).and_then(|index| wishes.get(index));

@@ -52,7 +52,7 @@ pub(super) fn world(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         .is_some_and(|first| first.id == level.id);
     let hint = match game.screen() {
         Screen::Play | Screen::Paused if game.bout.session.is_played() => {
-            let is_new = game.records.of(&level.id).is_none();
+            let is_new = game.records.of_level(&level).is_none();
             match is_first && (is_new || game.bout.effects.is_reminding()) {
                 true => Hint::Way,
                 false => Hint::Hand,

@@ -91,7 +91,7 @@ fn checks(game: &mut Game, ui: &mut Ui, theme: &Theme) {
         let text = RichText::new(format!("{sign}  {text}"));
         ui.label(text.size(size).color(ink));
     };
-    let won = game.maker.summary().won;
+    let won = game.win_of_maker();
     if let Some(problem) = game.draft_problem() {
         line(ui, "×", &problem, theme.accent);
         return;
@@ -106,24 +106,33 @@ fn checks(game: &mut Game, ui: &mut Ui, theme: &Theme) {
             let time = (said.seconds)(seconds);
             Some(("✓", format!("{name}  {time}"), theme.good))
         }
-        Finding::NotFound => Some(("–", format!("{name}: {}", words.not_found), theme.ink)),
-        Finding::NotAsked => None,
+        Finding::NotFound | Finding::NotAsked => None,
     };
     let findings = check.findings();
+    if findings.has_short_rope {
+        line(ui, "!", words.short_rope, theme.accent);
+    }
     if check.level().has_basket() {
         let wins_by_itself = matches!(findings.by_itself, Finding::Yes(_));
         if wins_by_itself {
             line(ui, "!", words.wins_by_itself, theme.accent);
         }
-        let [squeezed, shaved] = words.can_be;
-        for (finding, name) in [(findings.squeezed, squeezed), (findings.shaved, shaved)] {
-            if let Some((sign, text, ink)) = told(finding, name) {
+        let squeezed = match (findings.squeezed, won) {
+            // What the maker has done can be done.
+            (Finding::NotFound, Some(won)) if won.is_whole => Finding::Yes(None),
+            (finding, _) => finding,
+        };
+        let ways = words.can_be.into_iter().zip(words.not_found);
+        for (finding, (name, not_found)) in [squeezed, findings.shaved].into_iter().zip(ways) {
+            if finding == Finding::NotFound {
+                line(ui, "–", not_found, theme.ink);
+            } else if let Some((sign, text, ink)) = told(finding, name) {
                 line(ui, sign, &text, ink);
             }
         }
         match won {
-            Some(seconds) => {
-                let time = (said.seconds)(seconds);
+            Some(won) => {
+                let time = (said.seconds)(won.seconds);
                 line(
                     ui,
                     "✓",
@@ -134,14 +143,14 @@ fn checks(game: &mut Game, ui: &mut Ui, theme: &Theme) {
             None => line(ui, "–", words.not_won_by_maker, theme.ink),
         }
         if matches!(findings.straight, Finding::Yes(_)) && !wins_by_itself {
-            line(ui, "!", words.straight_wins, theme.accent);
+            line(ui, "•", words.straight_wins, theme.ink);
         }
     }
     if !check.level().has_basket() {
         line(ui, "–", words.is_playground, theme.ink);
     }
     let speed = match findings.real_time {
-        Finding::NotFound => Some(("!", words.not_real_time.to_string(), theme.accent)),
+        Finding::NotFound => Some(("•", words.not_real_time.to_string(), theme.ink)),
         finding => told(finding, words.real_time),
     };
     if let Some((sign, text, ink)) = speed {
