@@ -40,6 +40,7 @@ use drawing::DrawingWatch;
 pub use editing::{Drag, Editor, EditorOrigin, EditorPart, GRID, TURN};
 pub use ending::Ending;
 use fuwafuwa::DEFAULT_TICK;
+pub use keep::ListEntry;
 pub use making::{Cursor, DrawingTool, Flaws, Maker, WIDTHS};
 pub use notices::{Notice, Notices};
 pub use public::{EndedRound, PublicMode};
@@ -124,6 +125,8 @@ struct RemovedLevel {
     text: String,
     /// Index in [`Game::levels`] that it had.
     place: usize,
+    /// Whether the list of levels still shows a card in its place.
+    is_shown: bool,
 }
 
 impl Game {

@@ -5,6 +5,15 @@ use crate::platform::{Damage, Entry, Kind, Location, StorageEvent};
 use std::sync::Arc;
 use tamaire_play::{Level, Replay, ReplayError};
 
+/// Entry of the list of levels.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum ListEntry {
+    /// Level, by its index in [`Game::levels`].
+    Level(usize),
+    /// Removed level, by its index in the order of the removals.
+    Removed(usize),
+}
+
 impl Game {
     /// Schedules the settings to be saved once they no longer change. If writing fails, a message is shown,
     /// and the settings stay in effect until the game ends.
@@ -52,18 +61,86 @@ impl Game {
         Ok(())
     }
 
-    /// Returns the level that was removed last.
+    /// Returns the level that was removed last, unless a card in the list stands for it.
     pub fn removed_level(&self) -> Option<&Level> {
-        self.removed.last().map(|removed| removed.level.as_ref())
+        let last = self.removed.last().filter(|removed| !removed.is_shown);
+        last.map(|removed| removed.level.as_ref())
+    }
+
+    /// Returns the name of a removed level, given by its index in the order of the removals.
+    pub fn removed_name(&self, removed: usize) -> &str {
+        let level = &self.removed[removed].level;
+        self.settings.language.of(&level.game().name)
+    }
+
+    /// Returns the levels in the order of the list, with the removed ones in their places.
+    fn with_removed(&self) -> Vec<ListEntry> {
+        let mut entries: Vec<ListEntry> = (0..self.levels.len()).map(ListEntry::Level).collect();
+        for (index, removed) in self.removed.iter().enumerate().rev() {
+            let place = removed.place.min(entries.len());
+            entries.insert(place, ListEntry::Removed(index));
+        }
+        entries
+    }
+
+    /// Returns the player's own levels in the order of the list, and those removed ones for which it shows a card.
+    pub fn own_entries(&self) -> Vec<ListEntry> {
+        let mut entries = self.with_removed();
+        entries.retain(|entry| match *entry {
+            ListEntry::Level(index) => self.is_own(index),
+            ListEntry::Removed(index) => self.removed[index].is_shown,
+        });
+        entries
+    }
+
+    /// Forgets the cards of removed levels, after the list was left.
+    pub(super) fn forget_removed_cards(&mut self) {
+        for removed in &mut self.removed {
+            removed.is_shown = false;
+        }
     }
 
     /// Brings back the level that was removed last, to its place in the list.
     pub fn bring_back(&mut self) {
-        let Some(RemovedLevel { level, text, place }) = self.removed.pop() else {
+        if let Some(last) = self.removed.len().checked_sub(1) {
+            self.bring_back_removed(last);
+        }
+    }
+
+    /// Brings back a removed level, given by its index in the order of the removals, to its place in the list.
+    pub fn bring_back_removed(&mut self, removed: usize) {
+        let mut order = self.with_removed();
+        let Some(at) = order
+            .iter()
+            .position(|entry| *entry == ListEntry::Removed(removed))
+        else {
             return;
         };
+        let before = order[..at].iter();
+        let place = before
+            .filter(|entry| matches!(entry, ListEntry::Level(_)))
+            .count();
+        let RemovedLevel { level, text, .. } = self.removed.remove(removed);
         self.files.keep_level_text(&level.id, text);
-        self.levels.retain(|known| known.id != level.id);
+        // The places of the others count the level again.
+        order[at] = ListEntry::Level(place);
+        for index in 0..self.removed.len() {
+            let number = index + usize::from(index >= removed);
+            let mut left = order.iter();
+            let found = left.position(|entry| *entry == ListEntry::Removed(number));
+            if let Some(found) = found {
+                self.removed[index].place = found;
+                order.remove(found);
+            }
+        }
+        let double = self.levels.iter().position(|known| known.id == level.id);
+        let place = match double {
+            Some(double) => {
+                self.levels.remove(double);
+                place - usize::from(double < place)
+            }
+            None => place,
+        };
         let place = place.min(self.levels.len());
         self.levels.insert(place, level);
         if self.chosen >= place {
@@ -87,6 +164,7 @@ impl Game {
             level,
             text,
             place: index,
+            is_shown: self.screen() == Screen::Levels,
         }));
         if self.chosen >= index {
             self.chosen = self.chosen.saturating_sub(1);

@@ -16,6 +16,9 @@ impl Game {
     pub fn update(&mut self, seconds: f32) {
         self.time += f64::from(seconds);
         self.notices.pass(seconds);
+        if self.screen() != Screen::Levels {
+            self.forget_removed_cards();
+        }
         let was_winding = self.bout.session.is_winding();
         let stands = matches!(self.screen(), Screen::Paused | Screen::Editor);
         let is_paused = stands || (self.bout.stepping && !was_winding);

@@ -4,7 +4,7 @@ use super::buttons::pale;
 use super::editor::focus_name;
 use super::icons;
 use super::widgets::{dim_background, finger, header_to_open, page, page_rect, words};
-use crate::game::Game;
+use crate::game::{Game, ListEntry};
 use crate::journey::{Journey, Lock, Section, Stars, stars_of};
 use crate::look::{Maps, Stage};
 use crate::records::Record;
@@ -24,6 +24,8 @@ use tamaire_sound::Menu;
 
 /// Gap between tiles [points].
 const GAP: f32 = 20.0;
+/// Gap below a tile and the buttons of an own level [points].
+const OWN_GAP: f32 = 10.0;
 /// Approximate width of a tile [points].
 const WIDE: f32 = 236.0;
 /// Height of a tile below its thumbnail [points].
@@ -38,6 +40,7 @@ enum LevelAction {
     Copy(usize),
     New(u8),
     BringBack,
+    BringBackRemoved(usize),
     GoOn,
     SavePack,
     TellLock(Lock),
@@ -64,7 +67,11 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
             for section in Section::all() {
                 let places = game.levels_of(section);
                 let can_make = section == Section::Own && game.public.is_none();
-                if places.is_empty() && !can_make {
+                let entries: Vec<ListEntry> = match section {
+                    Section::Own => game.own_entries(),
+                    _ => places.into_iter().map(ListEntry::Level).collect(),
+                };
+                if entries.is_empty() && !can_make {
                     continue;
                 }
                 let lock = game.lock_of(section);
@@ -72,10 +79,20 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                 if can_make && let Some(action) = make(ui, game) {
                     wanted = Some(action);
                 }
-                for row in places.chunks(columns) {
+                for row in entries.chunks(columns) {
                     let shown = ui.horizontal_top(|ui| {
-                        let shown = row.iter().map(|&index| {
+                        let shown = row.iter().map(|&entry| {
                             let shown = ui.vertical(|ui| {
+                                let index = match entry {
+                                    ListEntry::Level(index) => index,
+                                    ListEntry::Removed(removed) => {
+                                        let response = removed_tile(ui, game, removed, size);
+                                        if response.clicked() {
+                                            wanted = Some(LevelAction::BringBackRemoved(removed));
+                                        }
+                                        return response.rect;
+                                    }
+                                };
                                 let lock = game.own_lock_of(index).or(lock);
                                 let response = match lock {
                                     None => tile(ui, game, maps, index, size),
@@ -102,7 +119,11 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
                         shown.collect::<Vec<Rect>>()
                     });
                     if matches!(section, Section::Chapter(_)) {
-                        draw_way(ui, game, row, &shown.inner);
+                        let row = row.iter().filter_map(|entry| match *entry {
+                            ListEntry::Level(index) => Some(index),
+                            ListEntry::Removed(_) => None,
+                        });
+                        draw_way(ui, game, &row.collect::<Vec<_>>(), &shown.inner);
                     }
                 }
                 ui.add_space(6.0);
@@ -136,6 +157,7 @@ pub(super) fn show(game: &mut Game, stage: &mut Stage, ui: &mut Ui) {
         LevelAction::Copy(index) => game.duplicate(index),
         LevelAction::New(dim) => game.edit_blank(dim),
         LevelAction::BringBack => game.bring_back(),
+        LevelAction::BringBackRemoved(removed) => game.bring_back_removed(removed),
         LevelAction::GoOn => game.go_on_editing(),
         LevelAction::SavePack => game.save_pack(),
         LevelAction::ShowEnding => game.show_ending(),
@@ -208,7 +230,7 @@ fn heading(ui: &mut Ui, game: &Game, section: Section, journey: &Journey, lock: 
 fn draw_way(ui: &Ui, game: &Game, row: &[usize], tiles: &[Rect]) {
     let theme = game.theme();
     for (pair, &index) in tiles.windows(2).zip(row) {
-        let record = game.records.of(&game.levels[index].id);
+        let record = game.records.of_level(&game.levels[index]);
         let is_won = record.is_some_and(Record::is_won);
         let colour = if is_won { theme.accent } else { theme.faint };
         let (from, to) = (pair[0].right_center(), pair[1].left_center());
@@ -233,6 +255,33 @@ fn locked_tile(ui: &mut Ui, game: &Game, index: usize, size: Vec2) -> Response {
     let at = pos2(rect.center().x, rect.bottom() - 44.0) - 0.5 * galley.size();
     painter.galley(at, galley, theme.faint);
     focus_ring(ui, &response, rect, 22.0, &theme);
+    response
+}
+
+/// Shows a card in place of a removed level, which brings it back. Below it is as much room as the buttons had, so that a
+/// second press of the one that removed the level meets nothing.
+fn removed_tile(ui: &mut Ui, game: &Game, removed: usize, size: Vec2) -> Response {
+    let (theme, words) = (game.theme(), game.making());
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let text = (words.bring_back)(game.removed_name(removed));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &text));
+    let lively = highlight(ui, &response);
+    let place = rect.translate(vec2(0.0, -4.0 * lively));
+    let painter = ui.painter();
+    painter.rect_filled(place, 22.0, theme.card.gamma_multiply(0.6));
+    for (text, ink, down) in [
+        (words.removed, theme.faint, -20.0),
+        (&text, theme.ink, 20.0),
+    ] {
+        let galley = fitted(painter, text, 21.0, place.width() - 24.0, ink);
+        let at = place.center() + vec2(0.0, down) - 0.5 * galley.size();
+        painter.galley(at, galley, ink);
+    }
+    focus_ring(ui, &response, place, 22.0, &theme);
+    ui.spacing_mut().item_spacing.y = OWN_GAP;
+    for _ in 0..2 {
+        ui.allocate_exact_size(vec2(size.x, finger(ui)), Sense::hover());
+    }
     response
 }
 
@@ -293,7 +342,7 @@ fn own_buttons(ui: &mut Ui, game: &Game, index: usize, wide: f32) -> Option<Leve
             ],
         ),
     ];
-    ui.spacing_mut().item_spacing.y = 10.0;
+    ui.spacing_mut().item_spacing.y = OWN_GAP;
     for (gap, row) in rows {
         let size = vec2(0.5 * (wide - gap), finger(ui));
         ui.horizontal(|ui| {
@@ -341,7 +390,7 @@ pub(super) fn tile(ui: &mut Ui, game: &Game, maps: &Maps, index: usize, size: Ve
     let at = pos2(rect.center().x, map.bottom() + 23.0) - 0.5 * galley.size();
     painter.galley(at, galley, theme.ink);
 
-    let record = game.records.of(&level.id);
+    let record = game.records.of_level(level);
     let base = rect.bottom() - 26.0;
     let mut x = rect.center().x;
     let stars: Vec<bool> = stars_of(level, record)

@@ -59,7 +59,12 @@ pub(super) fn show(game: &mut Game, ui: &Ui) {
     } else {
         0.0
     };
-    note_notices_height(ui, height.min(0.6 * ui.max_rect().height()));
+    let height = match reserves(game.screen()) {
+        true => height.max(line_height(ui, scale) + 2.0 * GAP),
+        false => height,
+    };
+    let height = height.min(0.6 * ui.max_rect().height());
+    note_notices_height(ui, height, reserves(game.screen()));
     if let Some(location) = opened {
         game.blip(Menu::Confirm);
         game.open_folder_of(&location);
@@ -78,6 +83,23 @@ fn is_page(screen: Screen) -> bool {
             | Screen::Toolbox
             | Screen::Finish
     )
+}
+
+/// Whether a page always leaves room for a notice, because its buttons are often followed by one. So the next press does not
+/// meet another button.
+fn reserves(screen: Screen) -> bool {
+    matches!(screen, Screen::Levels | Screen::Finish)
+}
+
+/// Returns the height of a notice of one line [points].
+fn line_height(ui: &Ui, scale: f32) -> f32 {
+    let font = font(ui, scale);
+    let line = ui.fonts_mut(|fonts| fonts.row_height(&font));
+    line + scale * 18.0
+}
+
+fn font(ui: &Ui, scale: f32) -> FontId {
+    FontId::proportional((18.0 * scale).max(least_letters(ui.ctx())))
 }
 
 /// Returns the part of the screen in which notices are stacked, from its upper edge downwards. No button is there.
@@ -125,7 +147,7 @@ fn shown(game: &Game) -> Vec<Shown> {
 fn draw(ui: &Ui, painter: &Painter, notice: &Shown, top: Pos2, width: f32, scale: f32) -> Rect {
     let strength = notice.left.min(1.0);
     let ink = Color32::WHITE.gamma_multiply(strength);
-    let font = FontId::proportional((18.0 * scale).max(least_letters(ui.ctx())));
+    let font = font(ui, scale);
     let galley = painter.layout(notice.text.clone(), font, ink, width - scale * 36.0);
     let mut size = galley.size() + scale * vec2(36.0, 18.0);
     if notice.saved.is_some() {

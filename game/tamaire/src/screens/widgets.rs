@@ -78,9 +78,26 @@ pub fn perform(game: &mut Game, ui: &Ui, wanted: Option<Act>, on_escape: Act) {
 
 /// Focuses a widget if nothing has the focus, so that players can navigate from there with a pad alone.
 pub fn focus_first(ui: &Ui, response: &Response) {
-    if ui.memory(|memory| memory.focused().is_none()) {
-        response.request_focus();
+    let left: Option<Id> = ui.data(|data| data.get_temp(left_field_id()));
+    let left = left.filter(|&field| ui.ctx().read_response(field).is_some());
+    let focused = ui.memory(|memory| memory.focused());
+    let (Some(field), true) = (left, focused.is_none_or(|focused| focused == response.id)) else {
+        ui.data_mut(|data| data.remove::<Id>(left_field_id()));
+        if focused.is_none() {
+            response.request_focus();
+        }
+        return;
+    };
+    if focused.is_some() {
+        // Keys go on from the field.
+        ui.memory_mut(|memory| memory.request_focus(field));
+        ui.data_mut(|data| data.remove::<Id>(left_field_id()));
     }
+}
+
+/// Id under which the text field is stored that was left with Enter. As long as nothing else gets the focus, no widget has it.
+fn left_field_id() -> Id {
+    Id::unique("text field that was left with Enter")
 }
 
 /// Shows contents on a white card.
@@ -292,6 +309,7 @@ pub fn text_field(
         let size = vec2(ui.available_width().min(380.0), finger(ui));
         let margin = egui::Margin::symmetric(12, 6);
         let frame = egui::Frame::new().fill(theme.button).corner_radius(12.0);
+        ui.visuals_mut().text_cursor.stroke = Stroke::new(2.5, theme.ink);
         let edit = TextEdit::singleline(value)
             .char_limit(most)
             .font(FontId::proportional(22.0))
@@ -305,6 +323,14 @@ pub fn text_field(
         ..WidgetInfo::text_edit(true, value.clone(), value.clone(), name)
     });
     value.retain(|letter| !letter.is_control());
+    if response.has_focus() {
+        let frame = Stroke::new(3.0, theme.ink);
+        let kind = egui::StrokeKind::Outside;
+        ui.painter().rect_stroke(response.rect, 12.0, frame, kind);
+    }
+    if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter)) {
+        ui.data_mut(|data| data.insert_temp(left_field_id(), response.id));
+    }
     response
 }
 
@@ -412,9 +438,12 @@ pub fn notices_height(ui: &Ui) -> f32 {
     ui.data(|data| data.get_temp(notices_id())).unwrap_or(0.0)
 }
 
-/// Notes the height of the notices below a page [points].
-pub fn note_notices_height(ui: &Ui, height: f32) {
-    ui.data_mut(|data| data.insert_temp(notices_id(), height));
+/// Notes the height of the notices below a page [points], and whether the page stays where it is when it grows.
+pub fn note_notices_height(ui: &Ui, height: f32, page_stays: bool) {
+    ui.data_mut(|data| {
+        data.insert_temp(notices_id(), height);
+        data.insert_temp(notices_id(), page_stays);
+    });
 }
 
 /// Shows the scrolling part of a screen: a column of at most `width` points with room for focus rings. The
@@ -466,7 +495,8 @@ fn follow_notices(ui: &Ui) {
     let id = Id::unique("height of the notices in the last frame");
     let height = notices_height(ui);
     let before: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(0.0);
-    if height > before {
+    let page_stays = ui.data(|data| data.get_temp(notices_id())) == Some(true);
+    if height > before && !page_stays {
         let by = vec2(0.0, before - height);
         ui.scroll_with_delta_animation(by, egui::style::ScrollAnimation::none());
     }

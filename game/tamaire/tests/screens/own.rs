@@ -6,8 +6,9 @@ use egui::Key;
 use egui_kittest::kittest::Queryable;
 use std::fs;
 use std::path::PathBuf;
-use tamaire::game::Screen;
+use tamaire::game::{Game, ListEntry, Screen};
 use tamaire::platform::Files;
+use tamaire_maker::items::Kind;
 
 /// Picture file to drop onto the window.
 fn cat() -> PathBuf {
@@ -125,4 +126,106 @@ fn two_games_at_once_lose_no_level() {
     let mut ids = own(&mut begin());
     ids.sort();
     assert_eq!(ids, ["cat.png", "other.png"]);
+}
+
+/// Keeps levels with these names, and opens the list.
+fn list_of(names: &[&str]) -> Window {
+    let mut window = open(Files::nowhere(), egui::vec2(1000.0, 640.0), 1.0);
+    for name in names {
+        let game = game(&mut window);
+        game.edit_blank(2);
+        game.add_thing(Kind::Basket);
+        game.name_draft(name);
+        assert!(game.keep_draft());
+        game.leave_editor();
+    }
+    game(&mut window).notices.clear();
+    game(&mut window).go(Screen::Levels);
+    frames(&mut window, 3);
+    window
+}
+
+/// Returns the names of the player's own levels.
+fn names(window: &mut Window) -> Vec<String> {
+    let game = game(window);
+    let own = (0..game.levels.len()).filter(|&place| game.is_own(place));
+    own.map(|place| game.levels[place].game().name.en.clone())
+        .collect()
+}
+
+fn own_count(game: &Game) -> usize {
+    (0..game.levels.len())
+        .filter(|&place| game.is_own(place))
+        .count()
+}
+
+#[test]
+fn double_press_of_remove_removes_one_level() {
+    let mut window = list_of(&["a", "b", "c"]);
+    button(&window, "Remove: a").scroll_to_me();
+    frames(&mut window, 30);
+    let at = button(&window, "Remove: a").rect().center();
+    let others = |window: &Window| {
+        ["Remove: b", "Change: b", "Remove: c"].map(|name| button(window, name).rect())
+    };
+    let before = others(&window);
+    for _ in 0..2 {
+        window.hover_at(at);
+        frames(&mut window, 1);
+        for pressed in [true, false] {
+            window.event(pointer_button(at, egui::PointerButton::Primary, pressed));
+            frames(&mut window, 1);
+        }
+        frames(&mut window, 3);
+        assert_eq!(names(&mut window), ["b", "c"]);
+        assert_eq!(others(&window), before, "nothing has moved");
+    }
+    click(&mut window, "Bring back a");
+    assert_eq!(names(&mut window), ["a", "b", "c"]);
+}
+
+#[test]
+fn removed_levels_come_back_to_their_places_in_any_order() {
+    let orders = [
+        ["a", "b", "c"],
+        ["c", "a", "b"],
+        ["b", "c", "a"],
+        ["c", "b", "a"],
+    ];
+    let mut window = list_of(&["a", "b", "c"]);
+    for removed in orders {
+        for back in orders {
+            let game = game(&mut window);
+            for name in removed {
+                let mut places = 0..game.levels.len();
+                let place = places.find(|&place| game.levels[place].game().name.en == name);
+                game.take_out(place.unwrap());
+            }
+            assert_eq!(game.own_entries().len(), 3);
+            for (count, name) in (1..).zip(back) {
+                let card = game
+                    .own_entries()
+                    .into_iter()
+                    .find_map(|entry| match entry {
+                        ListEntry::Removed(index) => {
+                            (game.removed_name(index) == name).then_some(index)
+                        }
+                        ListEntry::Level(_) => None,
+                    });
+                game.bring_back_removed(card.unwrap());
+                assert_eq!((game.own_entries().len(), own_count(game)), (3, count));
+            }
+            assert_eq!(names(&mut window), ["a", "b", "c"], "{removed:?}, {back:?}");
+        }
+    }
+    // After the list was left, only the last one can be brought back.
+    click(&mut window, "Remove: a");
+    click(&mut window, "Remove: b");
+    game(&mut window).go(Screen::Title);
+    frames(&mut window, 3);
+    game(&mut window).go(Screen::Levels);
+    frames(&mut window, 3);
+    assert!(window.query_by_label("Bring back a").is_none());
+    click(&mut window, "Bring back b");
+    assert_eq!(names(&mut window), ["b", "c"]);
 }
