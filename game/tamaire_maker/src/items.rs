@@ -27,7 +27,7 @@ use groups::is_pinned;
 pub use layers::{Stops, set_stops, stops_of};
 pub use movement::{rotate, stretch, translate};
 pub use removal::{Dropped, Removed, remove};
-pub use ties::{ends_of, first_hit, holder_at, tie_end};
+pub use ties::{ends_of, first_hit, holder_at, tie_again, tie_end};
 
 use fuwafuwa::Vec3;
 use fuwafuwa_scenes::Scene;

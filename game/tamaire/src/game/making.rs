@@ -14,7 +14,7 @@ use tamaire_maker::body;
 use tamaire_maker::check::Check;
 use tamaire_maker::draft::Draft;
 use tamaire_maker::drawing::{Brush, Drawing, PAPER, Pieces};
-use tamaire_maker::items::Item;
+use tamaire_maker::items::{self, Item};
 use tamaire_maker::palette::{Palette, crayon};
 use tamaire_play::Replay;
 use tamaire_play::level::LevelError;
@@ -350,6 +350,7 @@ impl Maker {
         let place = (middle, self.cell);
         let put = draft.change(|scene| {
             let put = body::put(scene, body, &drawing, &palette, place)?;
+            items::tie_again(scene, put);
             if stands {
                 // It stands on the floor of the room, so that it does not break in a fall.
                 scene.body[put].at[1] = low.y + ABOVE_FLOOR;

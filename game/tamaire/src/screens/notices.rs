@@ -59,12 +59,15 @@ pub(super) fn show(game: &mut Game, ui: &Ui) {
     } else {
         0.0
     };
-    let height = match reserves(game.screen()) {
+    // The buttons of this page are often followed by a notice, so there is always room for one.
+    let height = match game.screen() == Screen::Finish {
         true => height.max(line_height(ui, scale) + 2.0 * GAP),
         false => height,
     };
     let height = height.min(0.6 * ui.max_rect().height());
-    note_notices_height(ui, height, reserves(game.screen()));
+    // The next press must not meet another button.
+    let page_stays = matches!(game.screen(), Screen::Levels | Screen::Finish);
+    note_notices_height(ui, height, page_stays);
     if let Some(location) = opened {
         game.blip(Menu::Confirm);
         game.open_folder_of(&location);
@@ -83,12 +86,6 @@ fn is_page(screen: Screen) -> bool {
             | Screen::Toolbox
             | Screen::Finish
     )
-}
-
-/// Whether a page always leaves room for a notice, because its buttons are often followed by one. So the next press does not
-/// meet another button.
-fn reserves(screen: Screen) -> bool {
-    matches!(screen, Screen::Levels | Screen::Finish)
 }
 
 /// Returns the height of a notice of one line [points].

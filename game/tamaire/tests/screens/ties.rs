@@ -8,6 +8,7 @@ use fuwafuwa::Vec3;
 use fuwafuwa_scenes::scene::{JointAnchorText, JointText};
 use tamaire::game::Screen;
 use tamaire::platform::Files;
+use tamaire_maker::drawing::Brush;
 use tamaire_maker::items::{self, Item, Kind};
 use tamaire_play::AnyRound;
 
@@ -186,5 +187,45 @@ fn things_are_numbered_by_kind_and_a_saw_is_a_saw() {
         "Body 1", "Wall 1", "Saw 1", "Seesaw 1", "Pin 1", "Rope 1", "Paddle 1", "Hand 1",
     ] {
         button(&window, name);
+    }
+}
+
+#[test]
+fn rope_holds_a_body_that_is_drawn_anew() {
+    let mut window = roped(2);
+    let before = anchor(&mut window, 1);
+    let now = game(&mut window);
+    now.select_alone(Item::Body(0));
+    now.draw_selected();
+    // Only a strip in the middle is left, which is not where the rope was tied.
+    for y in [8.0, 56.0] {
+        let ends = [0.0, 64.0].map(|x| Vec3::new(x, y, 0.5));
+        now.maker.paper.stroke(ends[0], ends[1], 20.0, Brush::Erase);
+    }
+    now.maker.paper.end_stroke();
+    now.drop_drawing();
+    assert_eq!(now.screen(), Screen::Editor);
+    let after = anchor(&mut window, 1);
+    assert!(
+        after.point[1] < before.point[1] - 0.02,
+        "{before:?} {after:?}"
+    );
+    let place = Vec3::from(after.point);
+    let scene = game(&mut window).maker.draft.scene().clone();
+    assert_eq!(items::holder_at(&scene, place), Some(Item::Body(0)));
+    assert!(slack(&mut window).abs() < 1e-3);
+    assert!(is_whole_in_the_round(&mut window));
+}
+
+#[test]
+fn new_rope_is_tied_to_the_selected_one_of_two_bodies() {
+    let mut window = roped(2);
+    game(&mut window).add_thing(Kind::ALL[0]);
+    for body in [0, 1] {
+        let now = game(&mut window);
+        now.select(Item::Body(body));
+        now.add_thing(Kind::Rope);
+        let joint = now.maker.draft.scene().joint.last().unwrap();
+        assert_eq!(joint.anchors[1].body, Some(body + 1));
     }
 }

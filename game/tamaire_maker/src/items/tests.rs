@@ -1107,6 +1107,22 @@ fn end_of_a_rope_is_tied_to_what_it_is_dropped_on() {
 }
 
 #[test]
+fn rope_is_tied_again_to_a_body_that_was_drawn_anew() {
+    for dim in [2, 3] {
+        let mut scene = roped(dim);
+        scene.body[0].width *= 0.3;
+        let far = holder_at(&scene, Vec3::from(scene.joint[0].anchors[1].point));
+        assert_eq!(far, None);
+        tie_again(&mut scene, 0);
+        let joint = &scene.joint[0];
+        let near = holder_at(&scene, Vec3::from(joint.anchors[1].point));
+        assert_eq!(near, Some(Item::Body(0)));
+        assert!((joint.length.unwrap() - super::movement::span(joint)).abs() < 1e-4);
+        assert_eq!(joints_after(&scene, 10), 1);
+    }
+}
+
+#[test]
 fn hole_of_a_ring_is_no_place_to_tie_a_rope() {
     let mut scene = Draft::blank(2).scene().clone();
     let ring = add(

@@ -274,6 +274,29 @@ pub fn tie_end(scene: &mut Scene, joint: usize, end: usize, to: Vec3) -> bool {
     true
 }
 
+/// Moves the ends of ropes and springs that are tied to a body to the nearest places in it, after the body was drawn anew. They
+/// keep their slack.
+pub fn tie_again(scene: &mut Scene, body: usize) {
+    for joint in 0..scene.joint.len() {
+        if ends_of(scene, Item::Joint(joint)).is_none() {
+            continue;
+        }
+        let before = (span(&scene.joint[joint]), scene.joint[joint].length);
+        for end in 0..2 {
+            let anchor = &scene.joint[joint].anchors[end];
+            if holder_of_anchor(anchor) != Some(Item::Body(body)) {
+                continue;
+            }
+            let (at, radius) = (Vec3::from(anchor.point), anchor.radius);
+            if let Some(anchor) = anchor_on(scene, Item::Body(body), at) {
+                let radius = radius.or(anchor.radius);
+                scene.joint[joint].anchors[end] = JointAnchorText { radius, ..anchor };
+            }
+        }
+        keep_slack(&mut scene.joint[joint], before);
+    }
+}
+
 /// Returns the positions of the ends of a rope or spring [m]; `None` for other items.
 pub fn ends_of(scene: &Scene, item: Item) -> Option<[Vec3; 2]> {
     let Item::Joint(index) = item else {

@@ -156,16 +156,15 @@ fn checks(game: &mut Game, ui: &mut Ui, theme: &Theme) {
     if let Some((sign, text, ink)) = speed {
         line(ui, sign, &text, ink);
     }
-    if !check.is_done() {
-        let trying = (words.bots_try)(check.played_seconds());
-        line(ui, "…", &trying, theme.faint);
-        progress(ui, theme, check);
-    }
+    progress(ui, theme, check);
 }
 
-/// Shows how far the checks are.
+/// Shows how far the checks are. Its room stays empty when they are finished, so that no button moves.
 fn progress(ui: &mut Ui, theme: &Theme, check: &Check) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 14.0), Sense::hover());
+    if check.is_done() {
+        return;
+    }
     let share = check.progress();
     response.widget_info(|| {
         let percent = format!("{:.0} %", 100.0 * share);
