@@ -1107,6 +1107,30 @@ fn end_of_a_rope_is_tied_to_what_it_is_dropped_on() {
 }
 
 #[test]
+fn rope_at_the_edge_of_a_body_is_as_long_as_it_seems() {
+    fn real_span<D: Dim>(scene: &Scene) -> f32 {
+        let world = scene.build::<D>().unwrap();
+        let (joint, _) = world.joints().next().unwrap();
+        let [from, to] = world.joint_anchor_positions(joint).unwrap().unwrap();
+        from.to_vec3().distance(to.to_vec3())
+    }
+    for dim in [2, 3] {
+        let mut scene = roped(dim);
+        let [low, high] = bounds(&scene, Item::Body(0)).unwrap();
+        let middle = 0.5 * (low + high);
+        for edge in [low.x + 0.01, high.x - 0.01] {
+            assert!(tie_end(&mut scene, 0, 1, middle.with_x(edge)));
+            let real = match dim {
+                2 => real_span::<Dim2>(&scene),
+                _ => real_span::<Dim3>(&scene),
+            };
+            let length = scene.joint[0].length.unwrap();
+            assert!((real - length).abs() < 3e-3, "{dim}D: {real} {length}");
+        }
+    }
+}
+
+#[test]
 fn rope_is_tied_again_to_a_body_that_was_drawn_anew() {
     for dim in [2, 3] {
         let mut scene = roped(dim);

@@ -19,6 +19,9 @@ const TIE_RADIUS: f32 = 0.06;
 /// Distance between two places that are tried along a line of sight [m].
 const STEP: f32 = 0.02;
 
+/// Maximum number of steps to the middle of the nodes that an end holds.
+const MAX_STEPS: usize = 50;
+
 /// Maximum number of bodies whose nodes are kept.
 const MAX_KNOWN: usize = 16;
 
@@ -50,13 +53,11 @@ impl Nodes {
             None => flat(scene.dim, Vec3::from(text.at)),
         };
         let nodes = KNOWN.with_borrow_mut(|known| {
-            let mut known = known.iter_mut();
-            let found = known.find_map(|known| {
+            known.iter_mut().find_map(|known| {
                 known.text.at = text.at;
                 let is_same = (known.dim, known.materials) == (scene.dim, scene.material.len());
                 (is_same && known.text == *text).then(|| known.nodes.clone())
-            });
-            found
+            })
         });
         let nodes = nodes.unwrap_or_else(|| {
             let nodes: Rc<[Vec3]> = match scene.dim {
@@ -92,6 +93,20 @@ impl Nodes {
                 .total_cmp(&(*b - to).length_squared())
         });
         nearest.unwrap_or(to) + self.at
+    }
+
+    /// Returns the position near another one that is the middle of the nodes that an anchor there holds [m]. So the end is
+    /// where the editor shows it, and a rope is as long as it seems.
+    fn middle_near(&self, at: Vec3, radius: f32) -> Vec3 {
+        let mut place = at;
+        for _ in 0..MAX_STEPS {
+            let middle = self.held_at(place, radius);
+            if middle.distance(place) < 1e-5 {
+                break;
+            }
+            place = middle;
+        }
+        place
     }
 
     /// Returns the middle of the nodes that an anchor at a position holds [m].
@@ -222,8 +237,7 @@ pub(super) fn anchor_on(scene: &Scene, item: Item, at: Vec3) -> Option<JointAnch
     match item {
         Item::Body(index) => {
             let nodes = Nodes::of(scene, index)?;
-            // The middle of the held nodes, so that the end is where the editor shows it.
-            let place = nodes.held_at(nodes.held_at(at, TIE_RADIUS), TIE_RADIUS);
+            let place = nodes.middle_near(at, TIE_RADIUS);
             anchor = fixed(place);
             (anchor.body, anchor.radius) = (Some(index + 1), Some(TIE_RADIUS));
         }
