@@ -1,12 +1,13 @@
 //! Soft bodies that require more substeps than the world allows: scaling of their stiffness or mass.
 
 use super::SoftBody;
+use super::damping::{PieceMotion, motions};
 use super::element_forces::Row;
 use super::element_law::{IDENTITY, Matrix};
 use super::hyperelasticity::relative_stiffness;
 use crate::foundation::dim::Dim;
 use crate::foundation::hash::{Hash, HashState};
-use crate::foundation::ids::{ElementId, IndexVec, NodeId};
+use crate::foundation::ids::{ElementId, IndexVec, NodeId, PieceId};
 use crate::topology::mesh::Element;
 use crate::world::{StiffBodies, WorldConfig};
 use glam::DVec3;
@@ -104,7 +105,61 @@ impl<D: Dim> SoftBody<D> {
         let stiffening = Stiffening::at_least(self.stiffening());
         if stiffening != self.state.stiffening {
             self.state.stiffening = stiffening;
+            let before = self.topology.mass_scale;
             self.scale_for(config);
+            let grown = self.topology.mass_scale / before;
+            if grown > 1.0 {
+                self.slow_deformation((1.0 / grown.sqrt()) as f32);
+            }
+        }
+    }
+
+    /// Multiplies the velocities relative to the affine motion of each piece by a factor. If the mass scale grew at the same
+    /// velocities, these motions would gain energy each time.
+    fn slow_deformation(&mut self, factor: f32) {
+        let motions = motions(self);
+        let wide = |row: Row| row.xyz().as_dvec3();
+        let mut moments: IndexVec<PieceId, [DVec3; 3]> =
+            vec![[DVec3::ZERO; 3]; motions.len()].into();
+        for &id in &self.cache.awake {
+            let piece = self.topology.pieces.of_node(id);
+            let offset = wide(self.state.position[id]) - motions[piece].centre;
+            let impulse = wide(self.state.velocity[id]) * f64::from(self.state.mass[id]);
+            for axis in 0..D::N {
+                moments[piece][axis] += impulse * offset[axis];
+            }
+        }
+        let rigid: IndexVec<PieceId, _> = motions.iter().map(PieceMotion::rigid).collect();
+        let gradients = motions.iter().zip(moments.iter()).map(|(motion, moments)| {
+            // A piece with fixed nodes has the scaled mass in all its motion.
+            if motion.nodes == 0 || motion.has_fixed_nodes() {
+                return None;
+            }
+            let inverse = motion.inverse_spread::<D>();
+            Some([0, 1, 2].map(|axis: usize| {
+                let parts = [0, 1, 2].map(|k: usize| moments[k] * inverse[k][axis]);
+                parts[0] + parts[1] + parts[2]
+            }))
+        });
+        let gradients: IndexVec<PieceId, Option<[DVec3; 3]>> = gradients.collect();
+        for index in 0..self.cache.awake.len() {
+            let id = self.cache.awake[index];
+            if self.state.inverse_mass[id] == 0.0 {
+                continue;
+            }
+            let piece = self.topology.pieces.of_node(id);
+            let at = self.state.position[id];
+            let affine = match &gradients[piece] {
+                None => rigid[piece].at(at),
+                Some(columns) => {
+                    let offset = wide(at) - motions[piece].centre;
+                    let whole = rigid[piece].velocity().linear.as_dvec3();
+                    (0..D::N).fold(whole, |sum, axis| sum + columns[axis] * offset[axis])
+                }
+            };
+            let affine = Row::from(affine.as_vec3());
+            let own = self.state.velocity[id] - affine;
+            self.state.velocity[id] = affine + own * factor;
         }
     }
 

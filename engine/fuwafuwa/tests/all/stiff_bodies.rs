@@ -1,9 +1,9 @@
 //! Soft bodies that require more substeps than the world allows.
 
 use fuwafuwa::{
-    Dim, Dim2, Dim3, DimVector, Event, Hooks, Impulse, Joint, JointAnchor, Material, Momentum,
-    RigidBody, Shape, SoftBody, SoftBodyHandle, StiffBodies, Vec2, Vec3, Velocity, VoxelGrid,
-    World, WorldConfig,
+    Damping, Dim, Dim2, Dim3, DimVector, Elasticity, Event, Hooks, Impulse, Joint, JointAnchor,
+    Material, Momentum, RigidBody, Shape, SoftBody, SoftBodyHandle, StiffBodies, StressLaw, Vec2,
+    Vec3, Velocity, VoxelGrid, World, WorldConfig,
 };
 
 /// Width of the bodies [m]. Discs of 24 voxels and balls of 10 voxels require more than 64 substeps.
@@ -295,6 +295,65 @@ fn acting_damping_keeps_its_ratio_under_mass_scaling() {
     assert!(acting.stiffness >= 0.1 * substep, "{acting:?}");
 }
 
+/// A body of rubber that stiffens at large strains is thrown at the floor. Its mass scale follows the stiffening from tick
+/// to tick, without giving it energy.
+fn check_thrown_rubber<D: Dim>(speed: f32) {
+    let mut world = World::<D>::new(WorldConfig {
+        gravity: vector::<D>(0.0, -10.0, 0.0),
+        sleep: false,
+        ..WorldConfig::default()
+    })
+    .unwrap();
+    let floor = Shape::half_space(vector::<D>(0.0, 1.0, 0.0), D::Vector::ZERO);
+    world.add_rigid_body(RigidBody::fixed(floor)).unwrap();
+    let rubber = Material {
+        elasticity: Elasticity::new(7000.0, 0.4).unwrap(),
+        stress_law: StressLaw::Yeoh {
+            second: 0.07429,
+            third: 0.006489,
+        },
+        damping: Damping {
+            mass: 1.0,
+            ..Damping::default()
+        },
+        ..unbreakable()
+    };
+    let n = if D::N == 2 { 32 } else { 20 };
+    let ball = SoftBody::new(VoxelGrid::ball(n, 0.5).unwrap(), &[rubber]).unwrap();
+    let ball = ball.translated(vector::<D>(0.0, 0.3, 0.0));
+    let thrown = ball.with_velocity(Velocity::linear(vector::<D>(0.0, -speed, 0.0)));
+    let body = world.add_soft_body(thrown).unwrap();
+    let energy = |world: &World<D>| {
+        let pieces = world[body].energies(world.config().gravity);
+        pieces.iter().map(|piece| piece.total()).sum::<f64>()
+    };
+    let mut least = energy(&world);
+    let mut is_scaled = false;
+    for tick in 0..240 {
+        let report = world.step();
+        is_scaled |= report.scaled_bodies > 0;
+        let now = energy(&world);
+        assert!(
+            now < 1.1 * least,
+            "{speed} m/s, tick {tick}: {now} J after {least} J"
+        );
+        least = least.min(now);
+    }
+    assert!(is_scaled, "{speed} m/s");
+    let report = world.step();
+    assert_eq!(report.inverted, 0, "{speed} m/s");
+}
+
+#[test]
+fn changing_mass_scale_gives_a_stiffening_body_no_energy() {
+    for speed in [4.5, 6.0, 8.0] {
+        check_thrown_rubber::<Dim2>(speed);
+    }
+    for speed in [9.0, 13.0] {
+        check_thrown_rubber::<Dim3>(speed);
+    }
+}
+
 /// A disc that rests on the floor does not move, and is flattened only a little.
 #[test]
 fn mass_scaled_disc_without_damping_rests() {
@@ -306,7 +365,7 @@ fn mass_scaled_disc_without_damping_rests() {
     let floor = Shape::half_space(Vec2::Y, Vec2::ZERO);
     world.add_rigid_body(RigidBody::fixed(floor)).unwrap();
     let material = Material {
-        damping: fuwafuwa::Damping::NONE,
+        damping: Damping::NONE,
         ..unbreakable()
     };
     let body = world.add_soft_body(ball(material)).unwrap();
