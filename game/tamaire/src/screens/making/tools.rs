@@ -318,7 +318,7 @@ pub(super) fn crayons(game: &mut Game, ui: &mut Ui, rect: Rect) {
         draw_crayon(painter, &theme, cell, fill, is_chosen, lively);
         let size = least_letters(ui.ctx()).max(18.0);
         // The label is on the stem of the crayon.
-        let room = cell.width() - 28.0 - TIP;
+        let room = cell.width() - 26.0 - TIP;
         let galley = fitted(painter, name, size, room, theme.ink);
         let at = cell.left_center() + vec2(12.0, -0.5 * galley.size().y);
         let label = Rect::from_min_size(at, galley.size()).expand2(vec2(4.0, 0.0));
