@@ -158,8 +158,7 @@ impl Records {
         later.next().is_some_and(|(key, _)| key.starts_with(&first))
     }
 
-    /// Notes that a level takes the place of another version of itself, or of none. Results of an older program stay with
-    /// the version before.
+    /// Notes that `level` replaces `before`, or is new. Results of an older program are assigned to `before`.
     pub fn change(&mut self, before: Option<&Level>, level: &Level) {
         let Some(older) = self.0.get(&level.id).cloned() else {
             return;
@@ -176,6 +175,11 @@ impl Records {
     /// times that time ran back in the round. A win with assists is only compared with other assisted wins, and it
     /// fulfils no wishes. A win with rewinds is only compared with other such wins.
     pub fn note(&mut self, level: &Level, outcome: &Outcome, rewinds: u32) -> bool {
+        if !self.has_version(&level.id)
+            && let Some(older) = self.0.get(&level.id).cloned()
+        {
+            self.0.insert(key_of(level), older);
+        }
         let record = self.0.entry(key_of(level)).or_default();
         if !level.game().assists.is_empty() {
             return lower(&mut record.best_assisted, outcome.route, outcome.ticks);
@@ -331,6 +335,16 @@ mod tests {
         assert_eq!(
             records.of_level(&second).unwrap().best[&Route::Squeeze],
             900
+        );
+        let mut won_again = records.clone();
+        let slower = Outcome {
+            ticks: 1200,
+            ..outcome()
+        };
+        assert!(!won_again.note(&first, &slower, 0));
+        assert_eq!(
+            won_again.of_level(&first).unwrap().shortest(),
+            Some((900, true))
         );
         records.change(Some(&first), &second);
         assert_eq!(

@@ -114,8 +114,9 @@ impl<D: Dim> SoftBody<D> {
         }
     }
 
-    /// Multiplies the velocities relative to the affine motion of each piece by a factor. If the mass scale grew at the same
-    /// velocities, these motions would gain energy each time.
+    /// Multiplies all velocities other than the affine motion of each piece by `factor`. Only they have the scaled mass; the
+    /// mass of affine motion hardly changes with the scale, see [`piece_response`](super::piece_response). At unchanged
+    /// velocities, a growing mass scale would add kinetic energy.
     fn slow_deformation(&mut self, factor: f32) {
         let motions = motions(self);
         let wide = |row: Row| row.xyz().as_dvec3();
@@ -131,7 +132,7 @@ impl<D: Dim> SoftBody<D> {
         }
         let rigid: IndexVec<PieceId, _> = motions.iter().map(PieceMotion::rigid).collect();
         let gradients = motions.iter().zip(moments.iter()).map(|(motion, moments)| {
-            // A piece with fixed nodes has the scaled mass in all its motion.
+            // All motion of a piece with fixed nodes has the scaled mass, so only its rigid motion is kept.
             if motion.nodes == 0 || motion.has_fixed_nodes() {
                 return None;
             }

@@ -163,7 +163,7 @@ fn weight_at_which_a_rope_tears_is_told_in_kilograms() {
     let mut window = roped(2);
     game(&mut window).go(Screen::Properties);
     frames(&mut window, 3);
-    assert!(crate::told::tells(&window, "Tears with a load of"));
+    assert!(crate::told::tells(&window, "Breaks at a load of"));
     assert!(crate::told::tells(&window, "60 kg") && !crate::told::tells(&window, " N"));
     window.get_by_label("Length");
     assert_eq!(rope(&mut window).breaking_force, Some(600.0));

@@ -153,7 +153,7 @@ fn with_lying_box(id: &str, stuff: Stuff, gravity: f32) -> AnyRound {
     round
 }
 
-/// Returns by how much a box sinks under its own weight, early and after a while [m].
+/// Returns how far a box has sunk under its own weight after 0.3 s and after 10 s [m].
 fn sag(id: &str, stuff: Stuff) -> [f32; 2] {
     let mut round = with_lying_box(id, stuff, 1.0);
     wait(&mut round, 1);
@@ -164,7 +164,7 @@ fn sag(id: &str, stuff: Stuff) -> [f32; 2] {
     })
 }
 
-/// Returns the greatest speed of the height of a box in the third second after it fell to the floor [m/s].
+/// Returns the greatest rate of change of the height of a box [m/s], from 2 s to 2.5 s after it was laid on the floor.
 fn trembling(id: &str, stuff: Stuff) -> f32 {
     let mut round = with_lying_box(id, stuff, 4.0);
     wait(&mut round, 120);
