@@ -160,26 +160,29 @@ impl Records {
 
     /// Notes that `level` replaces `before`, or is new. Results of an older program are assigned to `before`.
     pub fn change(&mut self, before: Option<&Level>, level: &Level) {
-        let Some(older) = self.0.get(&level.id).cloned() else {
+        if !self.0.contains_key(&level.id) {
             return;
-        };
-        if !self.has_version(&level.id)
-            && let Some(before) = before
-        {
-            self.0.insert(key_of(before), older);
+        }
+        if let Some(before) = before {
+            self.assign_older(before);
         }
         self.0.entry(key_of(level)).or_default();
+    }
+
+    /// Assigns results of an older program to a version of a level, if they belong to none yet.
+    fn assign_older(&mut self, level: &Level) {
+        if !self.has_version(&level.id)
+            && let Some(older) = self.0.get(&level.id).cloned()
+        {
+            self.0.insert(key_of(level), older);
+        }
     }
 
     /// Records a win and returns whether it is the fastest win in its level by its route. `rewinds` is the number of
     /// times that time ran back in the round. A win with assists is only compared with other assisted wins, and it
     /// fulfils no wishes. A win with rewinds is only compared with other such wins.
     pub fn note(&mut self, level: &Level, outcome: &Outcome, rewinds: u32) -> bool {
-        if !self.has_version(&level.id)
-            && let Some(older) = self.0.get(&level.id).cloned()
-        {
-            self.0.insert(key_of(level), older);
-        }
+        self.assign_older(level);
         let record = self.0.entry(key_of(level)).or_default();
         if !level.game().assists.is_empty() {
             return lower(&mut record.best_assisted, outcome.route, outcome.ticks);

@@ -1,7 +1,7 @@
 //! Boxes around items.
 
 use super::{Item, basket, flat};
-use fuwafuwa::{Dim, Dim2, Dim3, MAX_EXTENT, Rotation, Vec3};
+use fuwafuwa::{Dim, Dim2, Dim3, MAX_EXTENT, Rotation, Vec3, World};
 use fuwafuwa_scenes::Scene;
 use fuwafuwa_scenes::scene::{
     BallText, BodyText, BoxText, CapsuleText, FieldText, Form, HandText, JointText, RigidBodyText,
@@ -295,12 +295,16 @@ fn known(scene: &Scene, text: &BodyText) -> Option<Built> {
     built
 }
 
-fn built<D: Dim>(scene: &Scene, text: &BodyText) -> Option<Built> {
-    let alone = Scene::read("body", &format!("dim = {}", D::N), &[]);
-    let mut alone = alone.ok()?;
+/// Builds a world with a single body of a scene; `None` if the body cannot be built with the materials.
+pub(super) fn built_alone<D: Dim>(scene: &Scene, text: &BodyText) -> Option<World<D>> {
+    let mut alone = Scene::read("body", &format!("dim = {}", D::N), &[]).ok()?;
     alone.material = scene.material.clone();
     alone.body.push(text.clone());
-    let world = alone.build::<D>().ok()?;
+    alone.build().ok()
+}
+
+fn built<D: Dim>(scene: &Scene, text: &BodyText) -> Option<Built> {
+    let world = built_alone::<D>(scene, text)?;
     let (_, body) = world.soft_bodies().next()?;
     let voxel = body.grid().voxel_size();
     if text.state.is_none() {

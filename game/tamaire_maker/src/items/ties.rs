@@ -1,7 +1,7 @@
 //! Ends of ropes, springs and pins: what is at a place, and tying an end to it.
 
 use super::additions::walls;
-use super::bounds::{bounds, grid_size, rotation_of};
+use super::bounds::{bounds, built_alone, grid_size, rotation_of};
 use super::movement::{keep_slack, span};
 use super::{Item, flat, holder_of_anchor, rounded};
 use fuwafuwa::{Dim, Dim2, Dim3, Rotation, Vec3};
@@ -128,13 +128,7 @@ impl Nodes {
 
 /// Returns the positions of the nodes of a body [m].
 fn built<D: Dim>(scene: &Scene, text: &BodyText) -> Vec<Vec3> {
-    let world = || {
-        let mut alone = Scene::read("body", &format!("dim = {}", D::N), &[]).ok()?;
-        alone.material = scene.material.clone();
-        alone.body.push(text.clone());
-        alone.build::<D>().ok()
-    };
-    let Some(world) = world() else {
+    let Some(world) = built_alone::<D>(scene, text) else {
         return Vec::new();
     };
     let nodes = world.soft_bodies().flat_map(|(_, body)| {
