@@ -1,0 +1,273 @@
+//! Arrays of the nodes, elements and pieces of a soft body.
+//!
+//! Node `i` of an array is the node with the `i`-th smallest id, likewise for elements. Arrays of one body at one
+//! moment belong together; when the body tears, nodes and elements come and go.
+
+use crate::convert::{Any, described, rows, vector_rows};
+use crate::error::{OrInvalid, invalid_parameter};
+use fuwafuwa::{Dim, DimVector, ElementState, ElementView, NodeId, SoftBody, Vec3};
+use numpy::ndarray::Array3;
+use numpy::{
+    Element, IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2,
+};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+/// Ids of all nodes, ascending.
+pub fn node_ids<D: Dim>(body: &SoftBody<D>) -> impl Iterator<Item = NodeId> + '_ {
+    body.mesh().nodes().map(|(id, _)| id)
+}
+
+/// Row of each node id; -1 for ids without a node.
+fn node_rows<D: Dim>(body: &SoftBody<D>) -> Vec<i32> {
+    let mut rows = vec![-1; body.mesh().node_capacity()];
+    for (row, id) in (0..).zip(node_ids(body)) {
+        rows[id.index()] = row;
+    }
+    rows
+}
+
+/// Returns an array with a value for each node.
+pub fn of_nodes<'py, D: Dim, T: Element>(
+    py: Python<'py>,
+    body: &SoftBody<D>,
+    value: impl FnMut(NodeId) -> T,
+) -> Any<'py> {
+    PyArray1::from_vec(py, node_ids(body).map(value).collect()).into_any()
+}
+
+/// Returns an array with a vector for each node.
+pub fn vectors_of_nodes<'py, D: Dim>(
+    py: Python<'py>,
+    body: &SoftBody<D>,
+    vector: impl FnMut(NodeId) -> D::Vector,
+) -> Any<'py> {
+    vector_rows(py, node_ids(body).map(vector)).into_any()
+}
+
+/// Returns an array with the position of each node in the undeformed body [m].
+pub fn rest_positions<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> Any<'py> {
+    let voxel_size = body.grid().voxel_size();
+    vectors_of_nodes(py, body, |id| {
+        let at = body.mesh().node(id).at.map(|coordinate| coordinate as f32);
+        D::Vector::from_vec3(Vec3::from_array(at) * voxel_size)
+    })
+}
+
+/// Returns an array with a value for each element.
+pub fn of_elements<'py, D: Dim, T: Element>(
+    py: Python<'py>,
+    body: &SoftBody<D>,
+    value: impl FnMut(ElementView) -> T,
+) -> Any<'py> {
+    PyArray1::from_vec(py, body.element_views().map(value).collect()).into_any()
+}
+
+/// Returns an array with the node of each slot of each element, by row; -1 for slots without a node.
+pub fn elements<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> Any<'py> {
+    let (mesh, known) = (body.mesh(), node_rows(body));
+    let mut values = vec![-1; mesh.element_count() * D::SLOTS];
+    let places = values.chunks_exact_mut(D::SLOTS);
+    for (place, (_, element)) in places.zip(mesh.elements()) {
+        let slots = &mesh.element_class(element).slots;
+        for (&slot, node) in slots.iter().zip(&element.nodes) {
+            place[usize::from(slot)] = known[node.index()];
+        }
+    }
+    rows(py, D::SLOTS, values).into_any()
+}
+
+/// Returns an array with a matrix for each element.
+pub fn matrices<'py, D: Dim>(
+    py: Python<'py>,
+    body: &SoftBody<D>,
+    matrix: impl Fn(&ElementState) -> [[f64; 3]; 3],
+) -> Any<'py> {
+    let mut values: Vec<f64> = Vec::with_capacity(body.mesh().element_count() * D::N * D::N);
+    for (id, _) in body.mesh().elements() {
+        let state = body.element_state(id).expect("the element is in the mesh");
+        let matrix = matrix(&state);
+        values.extend(matrix[..D::N].iter().flat_map(|row| &row[..D::N]));
+    }
+    let shape = (body.mesh().element_count(), D::N, D::N);
+    let array = Array3::from_shape_vec(shape, values);
+    array.expect("the values fill the matrices").into_pyarray(py).into_any()
+}
+
+/// Returns the corners of the blocks that the elements fill [m], and the element of each block, by row.
+pub fn cells<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> (Any<'py>, Any<'py>) {
+    let (mut corners, mut owners) = (Vec::new(), Vec::new());
+    for (row, view) in (0i32..).zip(body.element_views()) {
+        let children = match view.level {
+            0 => 1,
+            _ => view.children,
+        };
+        for child in (0..D::CORNERS).filter(|child| children >> child & 1 == 1) {
+            for corner in view.child_corners::<D>(child) {
+                corners.extend_from_slice(&corner.to_array()[..D::N]);
+            }
+            owners.push(row);
+        }
+    }
+    let shape = (owners.len(), D::CORNERS, D::N);
+    let corners = Array3::from_shape_vec(shape, corners).expect("each block has all corners");
+    (corners.into_pyarray(py).into_any(), PyArray1::from_vec(py, owners).into_any())
+}
+
+/// Returns the nodes of each exposed face, by row, and whether the face was torn.
+pub fn facets<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> (Any<'py>, Any<'py>) {
+    let (known, count) = (node_rows(body), D::CORNERS / 2);
+    let (mut nodes, mut torn) = (Vec::new(), Vec::new());
+    for facet in body.facets() {
+        nodes.extend(facet.nodes[..count].iter().map(|node| known[node.index()]));
+        torn.push(facet.is_torn);
+    }
+    (rows(py, count, nodes).into_any(), PyArray1::from_vec(py, torn).into_any())
+}
+
+/// Returns the properties of all pieces, as arrays by piece number.
+pub fn pieces<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> PyResult<Bound<'py, PyDict>> {
+    let views = body.piece_views();
+    let dict = PyDict::new(py);
+    let vectors = |vector: fn(&fuwafuwa::PieceView) -> Vec3| {
+        vector_rows(py, views.iter().map(|view| D::Vector::from_vec3(vector(view))))
+    };
+    let flags = |flag: fn(&fuwafuwa::PieceView) -> bool| {
+        PyArray1::from_vec(py, views.iter().map(flag).collect())
+    };
+    let mass = views.iter().map(|view| view.mass).collect();
+    let elements = views.iter().map(|view| view.element_count).collect();
+    dict.set_item("mass", PyArray1::from_vec(py, mass))?;
+    dict.set_item("centre", vectors(|view| view.centre))?;
+    dict.set_item("velocity", vectors(|view| view.velocity))?;
+    dict.set_item("low", vectors(|view| view.low))?;
+    dict.set_item("high", vectors(|view| view.high))?;
+    dict.set_item("element_count", PyArray1::from_vec(py, elements))?;
+    dict.set_item("asleep", flags(|view| view.asleep))?;
+    dict.set_item("quarantined", flags(|view| view.quarantined))?;
+    dict.set_item("removed", flags(|view| view.removed))?;
+    Ok(dict)
+}
+
+/// Returns the kinetic, elastic and gravitational energy of each piece [J].
+pub fn energies<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>, gravity: D::Vector) -> Any<'py> {
+    let energies = body.energies(gravity);
+    let values = energies.iter().flat_map(|one| [one.kinetic, one.elastic, one.gravitational]);
+    rows(py, 3, values.collect()).into_any()
+}
+
+/// Returns the closed lines around all pieces and their holes: a dict of arrays for each.
+pub fn outlines<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> PyResult<Bound<'py, PyList>> {
+    let (list, known) = (PyList::empty(py), node_rows(body));
+    for outline in body.outlines() {
+        let dict = PyDict::new(py);
+        let nodes = outline.nodes.iter().map(|node| known[node.index()]).collect();
+        let points = outline.points.iter().map(|&point| D::Vector::from_vec3(point));
+        dict.set_item("piece", outline.piece.0)?;
+        dict.set_item("nodes", PyArray1::from_vec(py, nodes))?;
+        dict.set_item("points", vector_rows(py, points))?;
+        dict.set_item("torn", PyArray1::from_vec(py, outline.is_torn))?;
+        list.append(dict)?;
+    }
+    Ok(list)
+}
+
+/// Returns the ids of nodes that are given as a mask or as rows.
+pub fn chosen_nodes<D: Dim>(body: &SoftBody<D>, nodes: &Any<'_>) -> PyResult<Vec<NodeId>> {
+    let ids: Vec<NodeId> = node_ids(body).collect();
+    let count = ids.len();
+    let expected = || format!("a bool array of {count} nodes, or rows from 0 to {}", count - 1);
+    if let Ok(mask) = nodes.extract::<PyReadonlyArray1<'_, bool>>() {
+        let mask = mask.as_array();
+        if mask.len() != count {
+            return Err(invalid_parameter("nodes", expected(), described(nodes)));
+        }
+        return Ok(ids.iter().zip(mask).filter(|(_, chosen)| **chosen).map(|(id, _)| *id).collect());
+    }
+    let rows: Vec<i64> = nodes
+        .extract()
+        .map_err(|_: PyErr| invalid_parameter("nodes", expected(), described(nodes)))?;
+    let id = |row: i64| {
+        let id = usize::try_from(row).ok().and_then(|row| ids.get(row));
+        id.copied().ok_or_else(|| invalid_parameter("nodes", expected(), row.to_string()))
+    };
+    rows.into_iter().map(id).collect()
+}
+
+/// Returns the finite vectors of an array, one for each of `count` nodes.
+fn vectors<D: Dim>(field: &str, value: &Any<'_>, count: usize) -> PyResult<Vec<D::Vector>> {
+    let wrong = || {
+        let expected = format!("an array of float32 or float64 of shape [{count}, {}]", D::N);
+        invalid_parameter(field, expected, described(value))
+    };
+    let numbers: Vec<f32> = if let Ok(array) = value.extract::<PyReadonlyArray2<'_, f32>>() {
+        let array = array.as_array();
+        if array.shape() != [count, D::N] {
+            return Err(wrong());
+        }
+        array.iter().copied().collect()
+    } else if let Ok(array) = value.extract::<PyReadonlyArray2<'_, f64>>() {
+        let array = array.as_array();
+        if array.shape() != [count, D::N] {
+            return Err(wrong());
+        }
+        array.iter().map(|&number| number as f32).collect()
+    } else {
+        return Err(wrong());
+    };
+    if let Some(place) = numbers.iter().position(|number| !number.is_finite()) {
+        let given = format!("{} at node {}", numbers[place], place / D::N);
+        return Err(invalid_parameter(field, "finite", given));
+    }
+    Ok(numbers.chunks_exact(D::N).map(vector_of::<D>).collect())
+}
+
+fn vector_of<D: Dim>(numbers: &[f32]) -> D::Vector {
+    let mut vector = Vec3::ZERO;
+    for (axis, &number) in numbers.iter().enumerate() {
+        vector[axis] = number;
+    }
+    D::Vector::from_vec3(vector)
+}
+
+/// New positions and velocities of all nodes.
+pub type NodeStates<D> = Vec<(NodeId, <D as Dim>::Vector, <D as Dim>::Vector)>;
+
+/// Returns the states of all nodes from arrays; missing arrays keep the present values.
+pub fn node_states<D: Dim>(
+    body: &SoftBody<D>,
+    positions: Option<&Any<'_>>,
+    velocities: Option<&Any<'_>>,
+) -> PyResult<NodeStates<D>> {
+    let present = node_ids(body).map(|id| {
+        let (position, velocity, _) = body.node_state(id);
+        (id, position, velocity)
+    });
+    let mut states: NodeStates<D> = present.collect();
+    if let Some(positions) = positions {
+        let given = vectors::<D>("positions", positions, states.len())?;
+        states.iter_mut().zip(given).for_each(|(state, position)| state.1 = position);
+    }
+    if let Some(velocities) = velocities {
+        let given = vectors::<D>("velocities", velocities, states.len())?;
+        states.iter_mut().zip(given).for_each(|(state, velocity)| state.2 = velocity);
+    }
+    Ok(states)
+}
+
+/// Sets the positions and velocities of nodes.
+pub fn set_node_states<D: Dim>(body: &mut SoftBody<D>, states: NodeStates<D>) -> PyResult<()> {
+    let set = |(id, position, velocity)| body.set_node_state(id, position, velocity);
+    states.into_iter().try_for_each(set).or_invalid()
+}
+
+/// Returns rows of nodes as an array.
+pub fn rows_of_nodes<'py, D: Dim>(
+    py: Python<'py>,
+    body: &SoftBody<D>,
+    nodes: impl Iterator<Item = NodeId>,
+) -> Any<'py> {
+    let known = node_rows(body);
+    let rows: Vec<i32> = nodes.map(|node| known[node.index()]).collect();
+    PyArray1::from_vec(py, rows).into_any()
+}

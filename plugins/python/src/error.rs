@@ -1,0 +1,59 @@
+//! The exception `fuwafuwa.Error`, with the words of the errors of the engine.
+
+use pyo3::create_exception;
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
+use std::fmt::Display;
+use std::io;
+use std::path::Path;
+
+create_exception!(
+    fuwafuwa,
+    Error,
+    PyValueError,
+    "A value is invalid, a handle is stale, or a file or a snapshot cannot be read.\n\nThe text names the field, \
+     what was expected and what was given. A failed call changes nothing."
+);
+
+/// Returns the exception for an error of the engine or of an importer.
+pub fn invalid(error: impl Display) -> PyErr {
+    Error::new_err(error.to_string())
+}
+
+/// Returns the exception for an invalid argument, in the words of the engine.
+pub fn invalid_parameter(
+    field: impl Into<String>,
+    expected: impl Into<String>,
+    given: impl Into<String>,
+) -> PyErr {
+    invalid(fuwafuwa::Error::InvalidParameter {
+        field: field.into().into(),
+        expected: expected.into().into(),
+        given: given.into(),
+    })
+}
+
+/// Returns the exception for a file that cannot be read: the subclass of `OSError` that belongs to the error code.
+pub fn unreadable(path: &Path, error: &io::Error) -> PyErr {
+    let path = path.display().to_string();
+    match error.raw_os_error() {
+        Some(code) => {
+            let text = error.to_string();
+            let end = text.find(" (os error").unwrap_or(text.len());
+            PyOSError::new_err((code, text[..end].to_owned(), path))
+        }
+        None => PyOSError::new_err(format!("{path}: {error}")),
+    }
+}
+
+/// Results whose error becomes `fuwafuwa.Error`.
+pub trait OrInvalid<T> {
+    /// Converts the error to an exception.
+    fn or_invalid(self) -> PyResult<T>;
+}
+
+impl<T, E: Display> OrInvalid<T> for Result<T, E> {
+    fn or_invalid(self) -> PyResult<T> {
+        self.map_err(invalid)
+    }
+}
