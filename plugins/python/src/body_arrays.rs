@@ -114,15 +114,25 @@ pub fn cells<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> (Any<'py>, Any
     (corners.into_pyarray(py).into_any(), PyArray1::from_vec(py, owners).into_any())
 }
 
-/// Returns the nodes of each exposed face, by row, and whether the face was torn.
-pub fn facets<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> (Any<'py>, Any<'py>) {
+/// Arrays of the exposed faces: their nodes and elements, by row, and whether they were torn.
+pub type FacetArrays<'py> = (Any<'py>, Any<'py>, Any<'py>);
+
+/// Returns the exposed faces.
+pub fn facets<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> FacetArrays<'py> {
     let (known, count) = (node_rows(body), D::CORNERS / 2);
-    let (mut nodes, mut torn) = (Vec::new(), Vec::new());
+    let mut element_rows = vec![-1; body.mesh().element_capacity()];
+    for (row, (id, _)) in (0i32..).zip(body.mesh().elements()) {
+        element_rows[id.index()] = row;
+    }
+    let (mut nodes, mut owners, mut torn) = (Vec::new(), Vec::new(), Vec::new());
     for facet in body.facets() {
         nodes.extend(facet.nodes[..count].iter().map(|node| known[node.index()]));
+        owners.push(element_rows[facet.element.index()]);
         torn.push(facet.is_torn);
     }
-    (rows(py, count, nodes).into_any(), PyArray1::from_vec(py, torn).into_any())
+    let nodes = rows(py, count, nodes).into_any();
+    let owners = PyArray1::from_vec(py, owners).into_any();
+    (nodes, owners, PyArray1::from_vec(py, torn).into_any())
 }
 
 /// Returns the properties of all pieces, as arrays by piece number.

@@ -19,7 +19,15 @@ macro_rules! handle {
         #[pymethods]
         impl $name {
             fn __repr__(&self) -> String {
-                format!("{:?}", self.0).replace(" { ", "(").replace(" }", ")").replace(": ", "=")
+                let text = format!("{:?}", self.0);
+                let numbers = text.split(|letter: char| !letter.is_ascii_digit());
+                let numbers: Vec<&str> = numbers.filter(|digits| !digits.is_empty()).collect();
+                match numbers[..] {
+                    [slot, generation] => {
+                        format!("{}(slot={slot}, generation={generation})", stringify!($name))
+                    }
+                    _ => text,
+                }
             }
 
             fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Any<'py>, (Bound<'py, PyBytes>,))> {

@@ -1,6 +1,6 @@
 //! Soft bodies outside of a world, and views of soft bodies in a world.
 
-use crate::body_arrays as arrays;
+use crate::body_arrays::{self as arrays, FacetArrays};
 use crate::convert::{
     Any, coordinates, name_of, named, rotation, vector, vector_array, velocity,
 };
@@ -553,8 +553,8 @@ macro_rules! body_methods {
             }
 
             /// Returns the exposed faces: int32 array (f, 2**(d-1)) of rows of nodes, counterclockwise as seen from
-            /// outside, and whether the face was torn as bool array (f,).
-            fn facets<'py>(slf: &Bound<'py, Self>) -> PyResult<(Any<'py>, Any<'py>)> {
+            /// outside, int32 array (f,) of rows of elements, and bool array (f,): whether the face was torn.
+            fn facets<'py>(slf: &Bound<'py, Self>) -> PyResult<FacetArrays<'py>> {
                 Self::read(slf, |body| Ok(arrays::facets(slf.py(), body)))
             }
 

@@ -852,7 +852,9 @@ macro_rules! world_class {
                 Ok((restore, (self.snapshot(py),)))
             }
 
-            /// Returns a scene that builds this world.
+            /// Returns a scene that describes the present state of the world. A world that was not stepped since it was built
+            /// is rebuilt with the same hash. Contacts, events, sleep timers and the number of ticks are not included: use
+            /// `snapshot` to go on with the same bits.
             fn to_scene(&self) -> PyResult<Scene> {
                 Scene::of_world(&self.world)
             }
