@@ -7,9 +7,7 @@ use crate::convert::{Any, described, rows, vector_rows};
 use crate::error::{OrInvalid, invalid_parameter};
 use fuwafuwa::{Dim, DimVector, ElementState, ElementView, NodeId, SoftBody, Vec3};
 use numpy::ndarray::Array3;
-use numpy::{
-    Element, IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2,
-};
+use numpy::{Element, IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -91,7 +89,10 @@ pub fn matrices<'py, D: Dim>(
     }
     let shape = (body.mesh().element_count(), D::N, D::N);
     let array = Array3::from_shape_vec(shape, values);
-    array.expect("the values fill the matrices").into_pyarray(py).into_any()
+    array
+        .expect("the values fill the matrices")
+        .into_pyarray(py)
+        .into_any()
 }
 
 /// Returns the corners of the blocks that the elements fill [m], and the element of each block, by row.
@@ -111,7 +112,10 @@ pub fn cells<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> (Any<'py>, Any
     }
     let shape = (owners.len(), D::CORNERS, D::N);
     let corners = Array3::from_shape_vec(shape, corners).expect("each block has all corners");
-    (corners.into_pyarray(py).into_any(), PyArray1::from_vec(py, owners).into_any())
+    (
+        corners.into_pyarray(py).into_any(),
+        PyArray1::from_vec(py, owners).into_any(),
+    )
 }
 
 /// Arrays of the exposed faces: their nodes and elements, by row, and whether they were torn.
@@ -140,7 +144,10 @@ pub fn pieces<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> PyResult<Boun
     let views = body.piece_views();
     let dict = PyDict::new(py);
     let vectors = |vector: fn(&fuwafuwa::PieceView) -> Vec3| {
-        vector_rows(py, views.iter().map(|view| D::Vector::from_vec3(vector(view))))
+        vector_rows(
+            py,
+            views.iter().map(|view| D::Vector::from_vec3(vector(view))),
+        )
     };
     let flags = |flag: fn(&fuwafuwa::PieceView) -> bool| {
         PyArray1::from_vec(py, views.iter().map(flag).collect())
@@ -162,7 +169,9 @@ pub fn pieces<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> PyResult<Boun
 /// Returns the kinetic, elastic and gravitational energy of each piece [J].
 pub fn energies<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>, gravity: D::Vector) -> Any<'py> {
     let energies = body.energies(gravity);
-    let values = energies.iter().flat_map(|one| [one.kinetic, one.elastic, one.gravitational]);
+    let values = energies
+        .iter()
+        .flat_map(|one| [one.kinetic, one.elastic, one.gravitational]);
     rows(py, 3, values.collect()).into_any()
 }
 
@@ -171,8 +180,15 @@ pub fn outlines<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> PyResult<Bo
     let (list, known) = (PyList::empty(py), node_rows(body));
     for outline in body.outlines() {
         let dict = PyDict::new(py);
-        let nodes = outline.nodes.iter().map(|node| known[node.index()]).collect();
-        let points = outline.points.iter().map(|&point| D::Vector::from_vec3(point));
+        let nodes = outline
+            .nodes
+            .iter()
+            .map(|node| known[node.index()])
+            .collect();
+        let points = outline
+            .points
+            .iter()
+            .map(|&point| D::Vector::from_vec3(point));
         dict.set_item("piece", outline.piece.0)?;
         dict.set_item("nodes", PyArray1::from_vec(py, nodes))?;
         dict.set_item("points", vector_rows(py, points))?;
@@ -186,20 +202,31 @@ pub fn outlines<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> PyResult<Bo
 pub fn chosen_nodes<D: Dim>(body: &SoftBody<D>, nodes: &Any<'_>) -> PyResult<Vec<NodeId>> {
     let ids: Vec<NodeId> = node_ids(body).collect();
     let count = ids.len();
-    let expected = || format!("a bool array of {count} nodes, or rows from 0 to {}", count - 1);
+    let expected = || {
+        format!(
+            "a bool array of {count} nodes, or rows from 0 to {}",
+            count - 1
+        )
+    };
     if let Ok(mask) = nodes.extract::<PyReadonlyArray1<'_, bool>>() {
         let mask = mask.as_array();
         if mask.len() != count {
             return Err(invalid_parameter("nodes", expected(), described(nodes)));
         }
-        return Ok(ids.iter().zip(mask).filter(|(_, chosen)| **chosen).map(|(id, _)| *id).collect());
+        return Ok(ids
+            .iter()
+            .zip(mask)
+            .filter(|(_, chosen)| **chosen)
+            .map(|(id, _)| *id)
+            .collect());
     }
     let rows: Vec<i64> = nodes
         .extract()
         .map_err(|_: PyErr| invalid_parameter("nodes", expected(), described(nodes)))?;
     let id = |row: i64| {
         let id = usize::try_from(row).ok().and_then(|row| ids.get(row));
-        id.copied().ok_or_else(|| invalid_parameter("nodes", expected(), row.to_string()))
+        id.copied()
+            .ok_or_else(|| invalid_parameter("nodes", expected(), row.to_string()))
     };
     rows.into_iter().map(id).collect()
 }
@@ -207,7 +234,10 @@ pub fn chosen_nodes<D: Dim>(body: &SoftBody<D>, nodes: &Any<'_>) -> PyResult<Vec
 /// Returns the finite vectors of an array, one for each of `count` nodes.
 fn vectors<D: Dim>(field: &str, value: &Any<'_>, count: usize) -> PyResult<Vec<D::Vector>> {
     let wrong = || {
-        let expected = format!("an array of float32 or float64 of shape [{count}, {}]", D::N);
+        let expected = format!(
+            "an array of float32 or float64 of shape [{count}, {}]",
+            D::N
+        );
         invalid_parameter(field, expected, described(value))
     };
     let numbers: Vec<f32> = if let Ok(array) = value.extract::<PyReadonlyArray2<'_, f32>>() {
@@ -256,11 +286,17 @@ pub fn node_states<D: Dim>(
     let mut states: NodeStates<D> = present.collect();
     if let Some(positions) = positions {
         let given = vectors::<D>("positions", positions, states.len())?;
-        states.iter_mut().zip(given).for_each(|(state, position)| state.1 = position);
+        states
+            .iter_mut()
+            .zip(given)
+            .for_each(|(state, position)| state.1 = position);
     }
     if let Some(velocities) = velocities {
         let given = vectors::<D>("velocities", velocities, states.len())?;
-        states.iter_mut().zip(given).for_each(|(state, velocity)| state.2 = velocity);
+        states
+            .iter_mut()
+            .zip(given)
+            .for_each(|(state, velocity)| state.2 = velocity);
     }
     Ok(states)
 }

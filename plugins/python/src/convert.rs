@@ -15,7 +15,9 @@ pub type Any<'py> = Bound<'py, PyAny>;
 /// Returns the numbers of a sequence or array. `expected` describes them for the error text.
 fn numbers(field: &str, expected: &str, value: &Any<'_>) -> PyResult<Vec<f32>> {
     value.extract().map_err(|_: PyErr| {
-        let given = value.repr().map_or_else(|_| "?".into(), |text| text.to_string());
+        let given = value
+            .repr()
+            .map_or_else(|_| "?".into(), |text| text.to_string());
         invalid_parameter(field, expected, given)
     })
 }
@@ -52,9 +54,10 @@ pub fn angular<D: Dim>(field: &str, value: Option<&Any<'_>>) -> PyResult<D::Angu
         _ => (3, "3 finite numbers"),
     };
     let numbers = match D::N {
-        2 => value.extract().map(|number: f32| vec![number]).or_else(|_| {
-            numbers(field, expected, value)
-        })?,
+        2 => value
+            .extract()
+            .map(|number: f32| vec![number])
+            .or_else(|_| numbers(field, expected, value))?,
         _ => numbers(field, expected, value)?,
     };
     if numbers.len() != count || numbers.iter().any(|number| !number.is_finite()) {
@@ -84,7 +87,9 @@ pub fn rotation<D: Dim>(value: Option<&Any<'_>>) -> PyResult<Rotation> {
         return Ok(Rotation::NONE);
     };
     let wrong = |expected: &str| {
-        let given = value.repr().map_or_else(|_| "?".into(), |text| text.to_string());
+        let given = value
+            .repr()
+            .map_or_else(|_| "?".into(), |text| text.to_string());
         invalid_parameter(FIELD, expected, given)
     };
     if D::N == 2 {
@@ -182,7 +187,11 @@ pub fn named<T: Copy>(field: &str, name: &str, table: &[(&str, T)]) -> PyResult<
     let found = table.iter().find(|(known, _)| *known == name);
     found.map(|&(_, value)| value).ok_or_else(|| {
         let names: Vec<String> = table.iter().map(|(name, _)| format!("{name:?}")).collect();
-        invalid_parameter(field, format!("one of {}", names.join(", ")), format!("{name:?}"))
+        invalid_parameter(
+            field,
+            format!("one of {}", names.join(", ")),
+            format!("{name:?}"),
+        )
     })
 }
 

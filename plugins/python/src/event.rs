@@ -1,7 +1,9 @@
 //! Events, contacts and the report of a step.
 
 use crate::convert::{angular_object, vector_array};
-use crate::handle::{GripHandle, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle, object};
+use crate::handle::{
+    GripHandle, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle, object,
+};
 use fuwafuwa::{Contact, Dim, Event, ObjectRef, PieceId};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -20,7 +22,8 @@ impl<'py> Fields<'py> {
     }
 
     fn piece(self, body: fuwafuwa::SoftBodyHandle, piece: PieceId) -> PyResult<Self> {
-        self.with("body", SoftBodyHandle(body))?.with("piece", piece.0)
+        self.with("body", SoftBodyHandle(body))?
+            .with("piece", piece.0)
     }
 }
 
@@ -56,7 +59,11 @@ pub fn contact_dict<'py, D: Dim>(
 pub fn event_dict<'py, D: Dim>(py: Python<'py>, event: &Event<D>) -> PyResult<Bound<'py, PyDict>> {
     let new = |kind| Fields::new(py, kind);
     let fields = match *event {
-        Event::NodeSplit { body, point, energy } => new("node_split")?
+        Event::NodeSplit {
+            body,
+            point,
+            energy,
+        } => new("node_split")?
             .with("body", SoftBodyHandle(body))?
             .with("point", vector_array(py, point))?
             .with("energy", energy)?,
@@ -66,13 +73,25 @@ pub fn event_dict<'py, D: Dim>(py: Python<'py>, event: &Event<D>) -> PyResult<Bo
         Event::ContactEnded { pair: objects } => {
             new("contact_ended")?.with("pair", pair(py, objects)?)?
         }
-        Event::SensorEntered { sensor, object: entered } => new("sensor_entered")?
+        Event::SensorEntered {
+            sensor,
+            object: entered,
+        } => new("sensor_entered")?
             .with("sensor", RigidBodyHandle(sensor))?
             .with("object", object(py, entered)?)?,
-        Event::SensorExited { sensor, object: exited } => new("sensor_exited")?
+        Event::SensorExited {
+            sensor,
+            object: exited,
+        } => new("sensor_exited")?
             .with("sensor", RigidBodyHandle(sensor))?
             .with("object", object(py, exited)?)?,
-        Event::Cut { knife, body, point, area, work } => new("cut")?
+        Event::Cut {
+            knife,
+            body,
+            point,
+            area,
+            work,
+        } => new("cut")?
             .with("knife", KnifeHandle(knife))?
             .with("body", SoftBodyHandle(body))?
             .with("point", vector_array(py, point))?
@@ -89,17 +108,24 @@ pub fn event_dict<'py, D: Dim>(py: Python<'py>, event: &Event<D>) -> PyResult<Bo
         Event::RigidBodyRemoved { body } => {
             new("rigid_body_removed")?.with("body", RigidBodyHandle(body))?
         }
-        Event::Overlapped { pair: objects, depth } => {
-            new("overlapped")?.with("pair", pair(py, objects)?)?.with("depth", depth)?
-        }
+        Event::Overlapped {
+            pair: objects,
+            depth,
+        } => new("overlapped")?
+            .with("pair", pair(py, objects)?)?
+            .with("depth", depth)?,
         Event::LeftRange { object: left } => {
             new("left_range")?.with("object", object(py, left)?)?
         }
         Event::Quarantined { body, piece } => new("quarantined")?.piece(body, piece)?,
-        Event::ImpactSlowed { body, piece, share } => {
-            new("impact_slowed")?.piece(body, piece)?.with("share", share)?
-        }
-        Event::StiffBodyScaled { body, mass_scale, stiffness_scale } => new("stiff_body_scaled")?
+        Event::ImpactSlowed { body, piece, share } => new("impact_slowed")?
+            .piece(body, piece)?
+            .with("share", share)?,
+        Event::StiffBodyScaled {
+            body,
+            mass_scale,
+            stiffness_scale,
+        } => new("stiff_body_scaled")?
             .with("body", SoftBodyHandle(body))?
             .with("mass_scale", mass_scale)?
             .with("stiffness_scale", stiffness_scale)?,
@@ -157,6 +183,8 @@ impl StepReport {
 impl StepReport {
     fn __repr__(&self) -> String {
         let text = format!("{self:?}");
-        text.replace(" { ", "(").replace(" }", ")").replace(": ", "=")
+        text.replace(" { ", "(")
+            .replace(" }", ")")
+            .replace(": ", "=")
     }
 }

@@ -64,7 +64,9 @@ pub fn from_shape<D: Dim>(
     let mut origin = Vec3::ZERO;
     for axis in 0..D::N {
         // Rounding must not add a voxel to a shape whose width is a multiple of the voxel size.
-        let voxels = ((high[axis] - low[axis]) / voxel_size - 1e-3).ceil().max(1.0);
+        let voxels = ((high[axis] - low[axis]) / voxel_size - 1e-3)
+            .ceil()
+            .max(1.0);
         size[axis] = voxels as usize;
         origin[axis] = 0.5 * (low[axis] + high[axis] - voxels * voxel_size);
     }
@@ -81,7 +83,11 @@ fn from_distance<D: Dim>(
     distance: &Any<'_>,
 ) -> PyResult<VoxelGrid<D>> {
     let size = size_of::<D>(size).ok_or_else(|| {
-        invalid_parameter("size", format!("{} whole numbers", D::N), format!("{size:?}"))
+        invalid_parameter(
+            "size",
+            format!("{} whole numbers", D::N),
+            format!("{size:?}"),
+        )
     })?;
     let failure = RefCell::new(None);
     let at = |point: Vec3| {
@@ -108,10 +114,16 @@ fn array_of<'py, D: Dim, T: numpy::Element>(
     grid: &VoxelGrid<D>,
     value: impl Fn([i32; 3]) -> T,
 ) -> Any<'py> {
-    let shape: Vec<usize> = grid.size()[..D::N].iter().map(|&extent| extent as usize).collect();
+    let shape: Vec<usize> = grid.size()[..D::N]
+        .iter()
+        .map(|&extent| extent as usize)
+        .collect();
     let values: Vec<T> = grid.voxels().map(value).collect();
     let array = ArrayD::from_shape_vec(IxDyn(&shape).f(), values);
-    array.expect("the grid has a value for each voxel").into_pyarray(py).into_any()
+    array
+        .expect("the grid has a value for each voxel")
+        .into_pyarray(py)
+        .into_any()
 }
 
 macro_rules! grid_class {
@@ -329,10 +341,20 @@ impl VoxelGrid2 {
     ) -> PyResult<Self> {
         let File { name, bytes } = File::read(source, MAX_FILE_BYTES)?;
         let colours = self::colours(colours)?;
-        let options = PictureOptions { across, voxel_size, colours, fill };
-        let import = py.detach(|| Picture::decode(&name, &bytes)?.import(&options)).or_invalid()?;
+        let options = PictureOptions {
+            across,
+            voxel_size,
+            colours,
+            fill,
+        };
+        let import = py
+            .detach(|| Picture::decode(&name, &bytes)?.import(&options))
+            .or_invalid()?;
         let notes = shown(py, texts(&import.notes))?;
-        Ok(Self { grid: import.grid, notes })
+        Ok(Self {
+            grid: import.grid,
+            notes,
+        })
     }
 
     /// Returns one voxel for each pixel of a picture, as for pixel art. The empty margin is kept, and outlines are not
@@ -374,7 +396,10 @@ impl VoxelGrid3 {
         let import = || Model::decode_part(&name, &bytes, part)?.import(voxel_size, &colours);
         let import = py.detach(import).or_invalid()?;
         let notes = shown(py, texts(&import.notes))?;
-        Ok(Self { grid: import.grid, notes })
+        Ok(Self {
+            grid: import.grid,
+            notes,
+        })
     }
 
     /// Returns the largest connected object in a medical scan: NIfTI-1 or NIfTI-2 (.nii, .nii.gz), from a path or
@@ -400,7 +425,10 @@ impl VoxelGrid3 {
     ) -> PyResult<Self> {
         let limit = fuwafuwa_scan::MAX_FILE_BYTES;
         let files: Vec<File> = match source.cast::<PyList>() {
-            Ok(list) => list.iter().map(|one| File::read(&one, limit)).collect::<PyResult<_>>()?,
+            Ok(list) => list
+                .iter()
+                .map(|one| File::read(&one, limit))
+                .collect::<PyResult<_>>()?,
             Err(_) => vec![File::read(source, limit)?],
         };
         let segmentation = match (labels, thresholds) {
@@ -410,19 +438,27 @@ impl VoxelGrid3 {
             }
             (Some(labels), None) => Segmentation::Labels(labels),
             (None, Some(thresholds)) => {
-                let ranges = thresholds.iter().map(|&(low, high, number)| (low..=high, number));
+                let ranges = thresholds
+                    .iter()
+                    .map(|&(low, high, number)| (low..=high, number));
                 let ranges: Vec<(RangeInclusive<f32>, u8)> = ranges.collect();
                 Segmentation::thresholds(&ranges)
             }
             (None, None) => Segmentation::Maps,
         };
-        let options = Options { resolution, fills_holes: fill_holes };
+        let options = Options {
+            resolution,
+            fills_holes: fill_holes,
+        };
         let imported = py.detach(|| -> Result<_, String> {
             let decode = |file: &File| {
                 let scan = Scan::decode(&file.name, &file.bytes, |_| {});
                 scan.map_err(|error| error.to_string())
             };
-            let scans = files.iter().map(decode).collect::<Result<Vec<Scan>, String>>()?;
+            let scans = files
+                .iter()
+                .map(decode)
+                .collect::<Result<Vec<Scan>, String>>()?;
             let all: Vec<&Scan> = scans.iter().collect();
             let organ = Organ::of(&all, &segmentation, &options, |_| {});
             let organ = organ.map_err(|error| error.to_string())?;

@@ -98,8 +98,11 @@ pub fn selector(field: &str, value: &Any<'_>) -> PyResult<ObjectSelector> {
         let (body, piece) = (body.0, PieceId(piece));
         return Ok(ObjectRef::Piece { body, piece }.into());
     }
-    let expected = "a SoftBodyHandle, a RigidBodyHandle, or a tuple of SoftBodyHandle and piece number";
-    let given = value.repr().map_or_else(|_| "?".into(), |text| text.to_string());
+    let expected =
+        "a SoftBodyHandle, a RigidBodyHandle, or a tuple of SoftBodyHandle and piece number";
+    let given = value
+        .repr()
+        .map_or_else(|_| "?".into(), |text| text.to_string());
     Err(invalid_parameter(field, expected, given))
 }
 

@@ -12,7 +12,11 @@ fn anchor<D: Dim>(field: &str, value: &Any<'_>) -> PyResult<JointAnchor<D>> {
     if let Ok((body, point, radius)) = value.extract::<(AnyBody, Any<'_>, f32)>() {
         let point = vector::<D>(field, &point)?;
         return Ok(match body {
-            AnyBody::Soft(body) => JointAnchor::SoftBody { body: body.0, point, radius },
+            AnyBody::Soft(body) => JointAnchor::SoftBody {
+                body: body.0,
+                point,
+                radius,
+            },
             AnyBody::Rigid(_) => {
                 let expected = "a pair of RigidBodyHandle and point: a rigid body has no radius";
                 return Err(invalid_parameter(field, expected, "a radius"));

@@ -97,7 +97,9 @@ impl Material {
 /// Sets a field of a material.
 fn set_field(material: &mut fuwafuwa::Material, name: &str, value: &Any<'_>) -> PyResult<()> {
     let wrong = |expected: &str| {
-        let given = value.repr().map_or_else(|_| "?".into(), |text| text.to_string());
+        let given = value
+            .repr()
+            .map_or_else(|_| "?".into(), |text| text.to_string());
         invalid_parameter(name, expected, given)
     };
     let number = || value.extract().map_err(|_: PyErr| wrong("a number"));
@@ -127,8 +129,9 @@ fn set_field(material: &mut fuwafuwa::Material, name: &str, value: &Any<'_>) -> 
         "rolling_resistance" => material.rolling_resistance = number()?,
         "strength" => material.strength = number()?,
         "hydrostatic_strength" => {
-            let hydrostatic: Option<f32> =
-                value.extract().map_err(|_: PyErr| wrong("a number or None"))?;
+            let hydrostatic: Option<f32> = value
+                .extract()
+                .map_err(|_: PyErr| wrong("a number or None"))?;
             material.strength_criterion = match hydrostatic {
                 Some(hydrostatic) => StrengthCriterion::DruckerPrager { hydrostatic },
                 None => StrengthCriterion::GreatestTension,
@@ -366,7 +369,10 @@ fn find(name: &str) -> PyResult<&'static LibraryMaterial> {
 #[pyfunction]
 #[pyo3(name = "library")]
 pub fn library_names() -> Vec<&'static str> {
-    library::MATERIALS.iter().map(|material| material.name).collect()
+    library::MATERIALS
+        .iter()
+        .map(|material| material.name)
+        .collect()
 }
 
 /// Returns the published values of a material of the library: a list of dicts with the keys quantity, unit, value

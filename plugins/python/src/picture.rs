@@ -17,7 +17,10 @@ pub fn view_of<D: Dim>(world: &World<D>) -> View<D> {
         }
     };
     for (_, body) in world.soft_bodies() {
-        let pieces = body.piece_views().into_iter().filter(|piece| !piece.removed);
+        let pieces = body
+            .piece_views()
+            .into_iter()
+            .filter(|piece| !piece.removed);
         pieces.for_each(|piece| include([piece.low, piece.high]));
     }
     let shown = world.rigid_bodies().filter(|(_, body)| !body.is_sensor());
@@ -58,7 +61,11 @@ pub fn space(
 ) -> Result<Vec<u8>, PaintError> {
     let (target, across) = (0.5 * (low + high), (high - low).length());
     let eye = target + across * Vec3::new(0.7, 0.6, 1.8);
-    let mut scene = Scene3d::new(Camera { eye, target, across });
+    let mut scene = Scene3d::new(Camera {
+        eye,
+        target,
+        across,
+    });
     match shows_elements {
         true => worlds::space(&mut scene, world, |scene, body| {
             worlds::space_elements(scene, body, |_| true);

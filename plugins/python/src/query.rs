@@ -32,7 +32,11 @@ pub fn filter(
         }
     }
     if let Some(only) = only {
-        filter = match named("only", only, &[("soft", Kind::Soft), ("rigid", Kind::Rigid)])? {
+        filter = match named(
+            "only",
+            only,
+            &[("soft", Kind::Soft), ("rigid", Kind::Rigid)],
+        )? {
             Kind::Soft => filter.only_soft(),
             Kind::Rigid => filter.only_rigid(),
         };

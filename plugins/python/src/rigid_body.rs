@@ -1,8 +1,8 @@
 //! Definitions of rigid bodies.
 
 use crate::convert::{
-    Any, angular_object, pickled, rotation, rotation_object, unpickled, vector_array,
-    vector_or_zero, velocity,
+    Any, angular_object, pickled, rotation, rotation_object, unpickled, vector, vector_array,
+    velocity,
 };
 use crate::shape::{Shape2, Shape3};
 use fuwafuwa::{Dim, Dim2, Dim3, Layers, MotionType, RigidBody};
@@ -25,7 +25,10 @@ struct Properties<'a, 'py> {
 
 /// Returns layers from memberships and filters.
 pub fn layers((memberships, filters): (u32, u32)) -> Layers {
-    Layers { memberships, filters }
+    Layers {
+        memberships,
+        filters,
+    }
 }
 
 fn with_properties<D: Dim>(
@@ -35,7 +38,10 @@ fn with_properties<D: Dim>(
     let turned = rotation::<D>(properties.rotation)?;
     let velocity = velocity::<D>(properties.velocity, properties.angular_velocity)?;
     Ok(RigidBody {
-        position: vector_or_zero::<D>("position", properties.position)?,
+        position: match properties.position {
+            Some(position) => vector::<D>("position", position)?,
+            None => body.position,
+        },
         rotation: turned,
         velocity,
         friction: properties.friction,
@@ -63,7 +69,12 @@ pub fn motion<'py>(py: Python<'py>, motion: MotionType) -> PyResult<Bound<'py, P
     let dict = PyDict::new(py);
     dict.set_item("type", motion_name(motion))?;
     match motion {
-        MotionType::Coupled { mass, stiffness, damping, max_force } => {
+        MotionType::Coupled {
+            mass,
+            stiffness,
+            damping,
+            max_force,
+        } => {
             dict.set_item("mass", mass)?;
             dict.set_item("stiffness", stiffness)?;
             dict.set_item("damping", damping)?;
@@ -80,8 +91,8 @@ macro_rules! rigid_body_class {
         #[doc = concat!("Definition of a rigid body in ", $dims, "D, for `World", $dims, ".add_rigid_body`.")]
         ///
         /// All constructors have the keyword arguments position [m], rotation (an angle [rad] in 2D, a quaternion
-        /// x, y, z, w or a rotation vector in 3D), friction (0 to 2, default 0.2), restitution (0 to 1, default 0),
-        /// layers (a pair of bit masks: memberships and filters; default member of layer 1, meets all), is_sensor and
+        /// x, y, z, w or a rotation vector in 3D), friction (default 0.2; 0.5 of dynamic bodies), restitution (0 to 1,
+        /// default 0), layers (a pair of bit masks: memberships and filters; default member of layer 1, meets all), is_sensor and
         /// user_data (an integer of 64 bits). A wrong value raises `Error` when the body is added to a world.
         #[pyclass(frozen, eq, from_py_object, module = "fuwafuwa")]
         #[derive(Copy, Clone, Debug, PartialEq)]
@@ -163,14 +174,14 @@ macro_rules! rigid_body_class {
                 with_properties(RigidBody::new(shape.0, motion_type), properties).map(Self)
             }
 
-            /// Returns a rigid body that gravity and contacts move and rotate. The shape must be bounded and centred on
-            /// its origin.
+            /// Returns a rigid body that gravity and contacts move and rotate. The shape must be bounded. Its middle becomes
+            /// the origin of the body, and is the default of position.
             ///
             /// mass [kg], 1e-6 to 1e6, with uniform density; velocity [m/s]; angular_velocity [rad/s], a number in 2D
             /// and a vector in 3D.
             #[staticmethod]
             #[pyo3(signature = (shape, mass, *, velocity=None, angular_velocity=None, position=None, rotation=None,
-                friction=0.2, restitution=0.0, layers=None, is_sensor=false, user_data=0))]
+                friction=0.5, restitution=0.0, layers=None, is_sensor=false, user_data=0))]
             #[allow(clippy::too_many_arguments)] // keyword arguments of Python
             fn dynamic(
                 shape: $shape,

@@ -34,9 +34,14 @@ impl Scene {
     #[staticmethod]
     #[pyo3(signature = (path, changes=Vec::new()), text_signature = "(path, changes=())")]
     fn read(path: PathBuf, changes: Vec<String>) -> PyResult<Self> {
-        let name = path.to_str().ok_or_else(|| invalid("the path is not valid Unicode"))?;
+        let name = path
+            .to_str()
+            .ok_or_else(|| invalid("the path is not valid Unicode"))?;
         let scene = open_scene(name, &changes).or_invalid()?;
-        Ok(Self { scene, name: name.to_owned() })
+        Ok(Self {
+            scene,
+            name: name.to_owned(),
+        })
     }
 
     /// Reads a scene from its text. name: for error texts; folder: where the files are that the scene names.
@@ -55,7 +60,10 @@ impl Scene {
         if let Some(folder) = folder {
             scene.embed_files(&reader_in(&folder)).or_invalid()?;
         }
-        Ok(Self { scene, name: name.to_owned() })
+        Ok(Self {
+            scene,
+            name: name.to_owned(),
+        })
     }
 
     /// Returns the names of the built-in scenes.
@@ -125,9 +133,11 @@ impl Scene {
     /// Sets the targets of the hands of a world that this scene has built to those at a tick.
     fn set_hand_targets(&self, world: &Any<'_>, tick: u64) -> PyResult<()> {
         if let (Ok(world), 2) = (world.cast::<World2>(), self.scene.dim) {
-            self.scene.set_hand_targets(&mut world.try_borrow_mut()?.world, tick);
+            self.scene
+                .set_hand_targets(&mut world.try_borrow_mut()?.world, tick);
         } else if let (Ok(world), 3) = (world.cast::<World3>(), self.scene.dim) {
-            self.scene.set_hand_targets(&mut world.try_borrow_mut()?.world, tick);
+            self.scene
+                .set_hand_targets(&mut world.try_borrow_mut()?.world, tick);
         } else {
             let expected = format!("set_hand_targets() takes a World{}", self.scene.dim);
             return Err(PyTypeError::new_err(expected));

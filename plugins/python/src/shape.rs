@@ -19,7 +19,11 @@ fn repr<D: Dim>(class: &str, shape: &Shape<D>) -> String {
         Shape::Box { centre, half } => {
             format!("box({:?}, {:?})", coordinates(half), coordinates(centre))
         }
-        Shape::OrientedBox { centre, half, rotation } => {
+        Shape::OrientedBox {
+            centre,
+            half,
+            rotation,
+        } => {
             let rotation = match D::N {
                 2 => format!("{:?}", rotation.scaled_axis().z),
                 _ => format!("{:?}", rotation.quaternion()),
@@ -51,7 +55,11 @@ fn parameters<'py, D: Dim>(py: Python<'py>, shape: &Shape<D>) -> PyResult<Bound<
             dict.set_item("half", vector_array(py, half))?;
             dict.set_item("rotation", rotation_object::<D>(py, Rotation::NONE)?)?;
         }
-        Shape::OrientedBox { centre, half, rotation } => {
+        Shape::OrientedBox {
+            centre,
+            half,
+            rotation,
+        } => {
             dict.set_item("kind", "box")?;
             dict.set_item("centre", vector_array(py, centre))?;
             dict.set_item("half", vector_array(py, half))?;
@@ -183,4 +191,3 @@ macro_rules! shape_class {
 
 shape_class!(Shape2, Dim2, "2");
 shape_class!(Shape3, Dim3, "3");
-

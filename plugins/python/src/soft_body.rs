@@ -1,9 +1,7 @@
 //! Soft bodies outside of a world, and views of soft bodies in a world.
 
 use crate::body_arrays::{self as arrays, FacetArrays};
-use crate::convert::{
-    Any, coordinates, name_of, named, rotation, vector, vector_array, velocity,
-};
+use crate::convert::{Any, coordinates, name_of, named, rotation, vector, vector_array, velocity};
 use crate::error::{OrInvalid, invalid, invalid_parameter};
 use crate::grid::{VoxelGrid2, VoxelGrid3, from_array, from_shape};
 use crate::handle::SoftBodyHandle;
@@ -39,8 +37,14 @@ fn materials(value: Option<&Any<'_>>) -> PyResult<Vec<fuwafuwa::Material>> {
         return Ok(vec![one.0]);
     }
     let several: Vec<Material> = value.extract().map_err(|_: PyErr| {
-        let given = value.repr().map_or_else(|_| "?".into(), |text| text.to_string());
-        invalid_parameter("materials", "a Material, or a list of them for numbers 1, 2, …", given)
+        let given = value
+            .repr()
+            .map_or_else(|_| "?".into(), |text| text.to_string());
+        invalid_parameter(
+            "materials",
+            "a Material, or a list of them for numbers 1, 2, …",
+            given,
+        )
     })?;
     Ok(several.into_iter().map(|material| material.0).collect())
 }
@@ -52,7 +56,10 @@ fn built<D: Dim>(
     grading: &str,
 ) -> PyResult<SoftBody<D>> {
     let materials = self::materials(materials)?;
-    let (law, grading) = (named("law", law, &LAWS)?, named("grading", grading, &GRADINGS)?);
+    let (law, grading) = (
+        named("law", law, &LAWS)?,
+        named("grading", grading, &GRADINGS)?,
+    );
     SoftBody::with_options(grid, &materials, law, grading).or_invalid()
 }
 
@@ -65,7 +72,9 @@ fn encoded<D: Dim>(body: &SoftBody<D>) -> PyResult<Vec<u8>> {
 
 fn decoded<D: Dim>(bytes: &[u8]) -> PyResult<SoftBody<D>> {
     let mut world = snapshot::load::<D>(bytes).or_invalid()?;
-    let body = world.nth_soft_body(0).ok_or_else(|| invalid("damaged pickle: no soft body"))?;
+    let body = world
+        .nth_soft_body(0)
+        .ok_or_else(|| invalid("damaged pickle: no soft body"))?;
     world.remove(body).or_invalid()
 }
 
@@ -329,7 +338,9 @@ macro_rules! body_methods {
             #[getter]
             fn centre_of_mass<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 let py = slf.py();
-                Self::read(slf, |body| Ok(vector_array(py, body.centre_of_mass()).into_any()))
+                Self::read(slf, |body| {
+                    Ok(vector_array(py, body.centre_of_mass()).into_any())
+                })
             }
 
             /// Kinetic energy [J].
@@ -365,7 +376,11 @@ macro_rules! body_methods {
             #[getter]
             fn materials(slf: &Bound<'_, Self>) -> PyResult<Vec<Material>> {
                 Self::read(slf, |body| {
-                    Ok(body.materials().iter().map(|&material| Material(material)).collect())
+                    Ok(body
+                        .materials()
+                        .iter()
+                        .map(|&material| Material(material))
+                        .collect())
                 })
             }
 
@@ -384,7 +399,9 @@ macro_rules! body_methods {
             /// Bit masks of the layers: memberships and filters.
             #[getter]
             fn layers(slf: &Bound<'_, Self>) -> PyResult<(u32, u32)> {
-                Self::read(slf, |body| Ok((body.layers().memberships, body.layers().filters)))
+                Self::read(slf, |body| {
+                    Ok((body.layers().memberships, body.layers().filters))
+                })
             }
 
             /// Number of the program.
@@ -441,7 +458,8 @@ macro_rules! body_methods {
                 Self::read(slf, |body| Ok(position(body)))
             }
 
-            /// Damage of the nodes, from 0 (intact) to 1, at which a node splits: float32 array (n,), a copy.
+            /// Damage of the nodes: float32 array (n,), a copy. 0 is intact. A node splits at 1, but a split nearby makes it
+            /// wait, and its damage may then exceed 1.
             #[getter]
             fn damage<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 Self::read(slf, |body| {
@@ -461,14 +479,18 @@ macro_rules! body_methods {
             #[getter]
             fn node_pieces<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 Self::read(slf, |body| {
-                    Ok(arrays::of_nodes(slf.py(), body, |id| body.pieces().of_node(id).0))
+                    Ok(arrays::of_nodes(slf.py(), body, |id| {
+                        body.pieces().of_node(id).0
+                    }))
                 })
             }
 
             /// Ids of the elements: uint32 array (m,), ascending. Ids are reused after an element is removed.
             #[getter]
             fn element_ids<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
-                Self::read(slf, |body| Ok(arrays::of_elements(slf.py(), body, |view| view.id.0)))
+                Self::read(slf, |body| {
+                    Ok(arrays::of_elements(slf.py(), body, |view| view.id.0))
+                })
             }
 
             /// Nodes of the elements: int32 array (m, 3**d) of rows of `positions`, -1 where an element has no node.
@@ -484,7 +506,9 @@ macro_rules! body_methods {
             /// Levels of the elements: uint8 array (m,). The cell of an element is 2**level voxels wide.
             #[getter]
             fn levels<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
-                Self::read(slf, |body| Ok(arrays::of_elements(slf.py(), body, |view| view.level)))
+                Self::read(slf, |body| {
+                    Ok(arrays::of_elements(slf.py(), body, |view| view.level))
+                })
             }
 
             /// Material numbers of the elements: uint8 array (m,).
@@ -498,13 +522,17 @@ macro_rules! body_methods {
             /// Piece numbers of the elements: uint32 array (m,).
             #[getter]
             fn element_pieces<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
-                Self::read(slf, |body| Ok(arrays::of_elements(slf.py(), body, |view| view.piece.0)))
+                Self::read(slf, |body| {
+                    Ok(arrays::of_elements(slf.py(), body, |view| view.piece.0))
+                })
             }
 
             /// Elastic strain ‖F − R‖ of the elements: float32 array (m,). 0.1 is a stretch by a tenth.
             #[getter]
             fn strain<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
-                Self::read(slf, |body| Ok(arrays::of_elements(slf.py(), body, |view| view.strain)))
+                Self::read(slf, |body| {
+                    Ok(arrays::of_elements(slf.py(), body, |view| view.strain))
+                })
             }
 
             /// Plastic strain of the elements: float32 array (m,). 0 without permanent deformation.
@@ -541,7 +569,8 @@ macro_rules! body_methods {
             fn elastic_energy<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 Self::read(slf, |body| {
                     Ok(arrays::of_elements(slf.py(), body, |view| {
-                        body.element_state(view.id).map_or(0.0, |state| state.energy)
+                        body.element_state(view.id)
+                            .map_or(0.0, |state| state.energy)
                     }))
                 })
             }
@@ -574,7 +603,11 @@ macro_rules! body_methods {
             /// Returns the rows of the nodes inside a shape or on its surface: int32 array.
             fn nodes_in<'py>(slf: &Bound<'py, Self>, region: $shape) -> PyResult<Any<'py>> {
                 Self::read(slf, |body| {
-                    Ok(arrays::rows_of_nodes(slf.py(), body, body.nodes_in(&region.0)))
+                    Ok(arrays::rows_of_nodes(
+                        slf.py(),
+                        body,
+                        body.nodes_in(&region.0),
+                    ))
                 })
             }
 
@@ -618,7 +651,9 @@ macro_rules! body_methods {
                 let described = Self::read(slf, |body| {
                     let (nodes, elements) = (body.mesh().node_count(), body.mesh().element_count());
                     let centre = coordinates(body.centre_of_mass());
-                    Ok(format!("<{name} of {nodes} nodes and {elements} elements at {centre:?}>"))
+                    Ok(format!(
+                        "<{name} of {nodes} nodes and {elements} elements at {centre:?}>"
+                    ))
                 });
                 Ok(described.unwrap_or_else(|error| format!("<{name}: {error}>")))
             }
@@ -626,5 +661,23 @@ macro_rules! body_methods {
     };
 }
 
-soft_body_class!(SoftBody2, SoftBodyView2, World2, VoxelGrid2, Shape2, Dim2, "2", "x, y");
-soft_body_class!(SoftBody3, SoftBodyView3, World3, VoxelGrid3, Shape3, Dim3, "3", "x, y, z");
+soft_body_class!(
+    SoftBody2,
+    SoftBodyView2,
+    World2,
+    VoxelGrid2,
+    Shape2,
+    Dim2,
+    "2",
+    "x, y"
+);
+soft_body_class!(
+    SoftBody3,
+    SoftBodyView3,
+    World3,
+    VoxelGrid3,
+    Shape3,
+    Dim3,
+    "3",
+    "x, y, z"
+);

@@ -48,8 +48,13 @@ struct Settings<'a, 'py> {
 
 impl Settings<'_, '_> {
     fn applied_to<D: Dim>(self, config: WorldConfig<D>) -> PyResult<WorldConfig<D>> {
-        let gravity = self.gravity.map(|gravity| vector::<D>("gravity", gravity)).transpose()?;
-        let stiff = self.stiff_bodies.map(|name| named("stiff_bodies", name, &STIFF_BODIES));
+        let gravity = self
+            .gravity
+            .map(|gravity| vector::<D>("gravity", gravity))
+            .transpose()?;
+        let stiff = self
+            .stiff_bodies
+            .map(|name| named("stiff_bodies", name, &STIFF_BODIES));
         Ok(WorldConfig {
             gravity: gravity.unwrap_or(config.gravity),
             drag: self.drag.unwrap_or(config.drag),
@@ -74,7 +79,12 @@ fn motion_type(
         ("kinematic", None) => Ok(MotionType::Kinematic),
         ("coupled", mass) => {
             let mass = mass.unwrap_or(2.0);
-            Ok(MotionType::Coupled { mass, stiffness, damping, max_force })
+            Ok(MotionType::Coupled {
+                mass,
+                stiffness,
+                damping,
+                max_force,
+            })
         }
         ("dynamic", Some(mass)) => Ok(MotionType::Dynamic { mass }),
         ("dynamic", None) => Err(PyTypeError::new_err("a dynamic body requires a mass")),
@@ -88,7 +98,10 @@ fn motion_type(
     }
 }
 
-fn reaction_dict<D: Dim>(py: Python<'_>, reaction: ReactionForce<D>) -> PyResult<Bound<'_, PyDict>> {
+fn reaction_dict<D: Dim>(
+    py: Python<'_>,
+    reaction: ReactionForce<D>,
+) -> PyResult<Bound<'_, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("point", vector_array(py, reaction.point))?;
     dict.set_item("force", vector_array(py, reaction.force))?;
@@ -99,9 +112,19 @@ fn reaction_dict<D: Dim>(py: Python<'_>, reaction: ReactionForce<D>) -> PyResult
 fn removed_dict(py: Python<'_>, removed: Removed) -> PyResult<Bound<'_, PyDict>> {
     let dict = PyDict::new(py);
     let pieces = removed.pieces.into_iter();
-    let pieces: Vec<_> = pieces.map(|(body, piece)| (SoftBodyHandle(body), piece.0)).collect();
-    let soft: Vec<_> = removed.soft_bodies.into_iter().map(SoftBodyHandle).collect();
-    let rigid: Vec<_> = removed.rigid_bodies.into_iter().map(RigidBodyHandle).collect();
+    let pieces: Vec<_> = pieces
+        .map(|(body, piece)| (SoftBodyHandle(body), piece.0))
+        .collect();
+    let soft: Vec<_> = removed
+        .soft_bodies
+        .into_iter()
+        .map(SoftBodyHandle)
+        .collect();
+    let rigid: Vec<_> = removed
+        .rigid_bodies
+        .into_iter()
+        .map(RigidBodyHandle)
+        .collect();
     dict.set_item("pieces", pieces)?;
     dict.set_item("soft_bodies", soft)?;
     dict.set_item("rigid_bodies", rigid)?;
@@ -654,7 +677,7 @@ macro_rules! world_class {
                 self.world.set_motion_type(body.0, motion).or_invalid()
             }
 
-            /// Sets the Coulomb friction coefficient of a rigid body, 0 to 2.
+            /// Sets the Coulomb friction coefficient of a rigid body, 0 or more.
             fn set_friction(&mut self, body: RigidBodyHandle, friction: f32) -> PyResult<()> {
                 self.world.set_friction(body.0, friction).or_invalid()
             }
@@ -685,7 +708,7 @@ macro_rules! world_class {
                 self.world.set_user_data(BodyHandle::from(body), user_data).or_invalid()
             }
 
-            /// Sets the factor on gravity of a soft body, default 1.
+            /// Sets the factor on gravity of a soft body, -100 to 100, default 1.
             fn set_gravity_scale(&mut self, body: SoftBodyHandle, scale: f32) -> PyResult<()> {
                 self.world.set_gravity_scale(body.0, scale).or_invalid()
             }
@@ -942,10 +965,30 @@ macro_rules! world_class {
 }
 
 world_class!(
-    World2, SoftBody2, SoftBodyView2, RigidBody2, RigidBodyView2, Joint2, Shape2, Dim2, "2", plane, "(0, -9.81)"
+    World2,
+    SoftBody2,
+    SoftBodyView2,
+    RigidBody2,
+    RigidBodyView2,
+    Joint2,
+    Shape2,
+    Dim2,
+    "2",
+    plane,
+    "(0, -9.81)"
 );
 world_class!(
-    World3, SoftBody3, SoftBodyView3, RigidBody3, RigidBodyView3, Joint3, Shape3, Dim3, "3", space, "(0, -9.81, 0)"
+    World3,
+    SoftBody3,
+    SoftBodyView3,
+    RigidBody3,
+    RigidBodyView3,
+    Joint3,
+    Shape3,
+    Dim3,
+    "3",
+    space,
+    "(0, -9.81, 0)"
 );
 
 #[pymethods]
@@ -969,7 +1012,10 @@ impl World3 {
         second: &Any<'_>,
     ) -> PyResult<usize> {
         let corner = vector::<Dim3>("corner", corner)?;
-        let (first, second) = (vector::<Dim3>("first", first)?, vector::<Dim3>("second", second)?);
+        let (first, second) = (
+            vector::<Dim3>("first", first)?,
+            vector::<Dim3>("second", second)?,
+        );
         let blade = Blade::parallelogram(corner, first, second);
         self.world.cut(body.0, &blade).or_invalid()
     }

@@ -7,10 +7,11 @@ use std::fs;
 /// Manifest of the workspace, from which most crates inherit their version.
 const MAIN: &str = "Cargo.toml";
 /// Manifests of other workspaces, each with its own version.
-const OTHERS: [&str; 3] = [
+const OTHERS: [&str; 4] = [
     "tools/against_rapier/Cargo.toml",
     "plugins/bevy_fuwafuwa/Cargo.toml",
     "plugins/bevy_fuwafuwa/examples/Cargo.toml",
+    "plugins/python/Cargo.toml",
 ];
 const CHANGELOG: &str = "CHANGELOG.md";
 /// Sentence of the changelog that the first release removes.
@@ -58,7 +59,7 @@ pub fn raise(version: &Version) -> Result<(), Failure> {
         written.map_err(|error| Failure::failed(format!("{path}: {error}")))?;
         eprintln!("xtask: {path}");
     }
-    for manifest in [MAIN, OTHERS[0], OTHERS[1]] {
+    for manifest in [MAIN, OTHERS[0], OTHERS[1], OTHERS[3]] {
         let mut lock = cargo();
         lock.args(["update", "--workspace", "--offline"]);
         lock.args(["--manifest-path", manifest]);
