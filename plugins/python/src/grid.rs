@@ -18,9 +18,9 @@ use std::ops::RangeInclusive;
 
 /// Returns the size of an array with one axis for each dimension; 1 on the third axis in 2D.
 fn size_of<D: Dim>(shape: &[usize]) -> Option<[usize; 3]> {
-    match shape {
-        &[x, y] if D::N == 2 => Some([x, y, 1]),
-        &[x, y, z] if D::N == 3 => Some([x, y, z]),
+    match *shape {
+        [x, y] if D::N == 2 => Some([x, y, 1]),
+        [x, y, z] if D::N == 3 => Some([x, y, z]),
         _ => None,
     }
 }
@@ -380,8 +380,8 @@ impl VoxelGrid3 {
     /// Returns the model in a MagicaVoxel file (.vox), from a path or bytes.
     ///
     /// The z axis of MagicaVoxel becomes y. voxel_size [m]; colours: a dict from palette indices (1 to 255) or
-    /// (red, green, blue) to material numbers (0 = empty); by default all voxels have material 1. part: name of an
-    /// object in the file.
+    /// (red, green, blue) to material numbers (0 = empty); by default the palette index is the material
+    /// number. part: name of an object in the file.
     #[staticmethod]
     #[pyo3(signature = (source, *, voxel_size=0.015625, colours=None, part=None))]
     fn vox(

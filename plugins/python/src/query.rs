@@ -1,6 +1,7 @@
 //! Queries: filters from keyword arguments, and results as dicts.
 
 use crate::convert::{Any, named, vector_array};
+use crate::error::invalid_parameter;
 use crate::handle::{object, selector};
 use crate::rigid_body::layers;
 use fuwafuwa::{Dim, QueryFilter, QueryHit, QueryOverlap};
@@ -12,6 +13,18 @@ use pyo3::types::{PyDict, PyList};
 enum Kind {
     Soft,
     Rigid,
+}
+
+/// Checks the largest distance of a query: the engine finds nothing within a distance that is not a number.
+pub fn check_distance(max_distance: f32) -> PyResult<()> {
+    match max_distance >= 0.0 {
+        true => Ok(()),
+        false => Err(invalid_parameter(
+            "max_distance",
+            "0 or more",
+            format!("{max_distance:?}"),
+        )),
+    }
 }
 
 /// Returns a filter from the keyword arguments of a query.

@@ -785,6 +785,7 @@ macro_rules! world_class {
             ) -> PyResult<Option<Bound<'py, PyDict>>> {
                 let origin = vector::<$dim>("origin", origin)?;
                 let ray = Ray::new(origin, vector::<$dim>("direction", direction)?);
+                query::check_distance(max_distance)?;
                 let filter = query::filter(exclude, only, layers, sensors)?;
                 let hit = self.world.ray_cast(ray, max_distance, filter);
                 hit.map(|hit| query::hit(py, &hit)).transpose()
@@ -808,6 +809,7 @@ macro_rules! world_class {
                 sensors: bool,
             ) -> PyResult<Option<Bound<'py, PyDict>>> {
                 let point = vector::<$dim>("point", point)?;
+                query::check_distance(max_distance)?;
                 let filter = query::filter(exclude, only, layers, sensors)?;
                 let hit = self.world.closest_point(point, max_distance, filter);
                 hit.map(|hit| query::hit(py, &hit)).transpose()

@@ -47,6 +47,8 @@ def test_non_finite_vectors_are_rejected(fwd):
         lambda: world.apply_impulse(ball, wrong, vector(fwd.dim, 0, 1)),
         lambda: world.ray_cast(wrong, vector(fwd.dim, 0, 1)),
         lambda: world.closest_point(wrong),
+        lambda: world.closest_point(vector(fwd.dim, 0, 0), NAN),
+        lambda: world.ray_cast(vector(fwd.dim, 0, 0), vector(fwd.dim, 0, 1), NAN),
         lambda: fwd.World(gravity=wrong),
         lambda: fwd.Shape.ball(0.1, wrong),
         lambda: fwd.RigidBody.fixed(fwd.Shape.ball(0.1), position=wrong),
