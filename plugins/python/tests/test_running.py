@@ -1,5 +1,6 @@
 """Memory, threads and overhead."""
 
+import multiprocessing
 import resource
 import sys
 import threading
@@ -122,3 +123,18 @@ def test_interrupt_ends_a_long_step():
         signal.signal(signal.SIGALRM, known)
     assert 0 < world.ticks < 10**9
     world.step()
+
+
+def step_in_a_process(world):
+    world.step(30)
+    return world.hash(), world
+
+
+@pytest.mark.parametrize("method", multiprocessing.get_all_start_methods())
+def test_worlds_step_in_other_processes(method):
+    world, _, _ = torn_world(classes(2))
+    with multiprocessing.get_context(method).Pool(2) as pool:
+        results = pool.map(step_in_a_process, [world, world])
+    world.step(30)
+    for found, sent in results:
+        assert found == sent.hash() == world.hash()
