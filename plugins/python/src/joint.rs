@@ -59,7 +59,7 @@ macro_rules! joint_class {
             /// Returns a joint that holds both anchors together.
             #[staticmethod]
             #[pyo3(signature = (first, second, *, breaking_force=f32::INFINITY),
-                text_signature = "(first, second, *, breaking_force=float('inf'))")]
+                text_signature = "(first, second, *, breaking_force=1e999)")]
             fn pin(first: &Any<'_>, second: &Any<'_>, breaking_force: f32) -> PyResult<Self> {
                 let (first, second) = (anchor("first", first)?, anchor("second", second)?);
                 Ok(Self(Joint::pin(first, second).with_breaking_force(breaking_force)))
@@ -68,7 +68,7 @@ macro_rules! joint_class {
             /// Returns a joint that keeps both anchors within `length` [m] of each other.
             #[staticmethod]
             #[pyo3(signature = (first, second, length, *, breaking_force=f32::INFINITY),
-                text_signature = "(first, second, length, *, breaking_force=float('inf'))")]
+                text_signature = "(first, second, length, *, breaking_force=1e999)")]
             fn rope(
                 first: &Any<'_>,
                 second: &Any<'_>,
@@ -82,7 +82,7 @@ macro_rules! joint_class {
             /// Returns a spring with a stiffness [N/m], a damping [N s/m] and a rest length [m].
             #[staticmethod]
             #[pyo3(signature = (first, second, stiffness, damping, length, *, breaking_force=f32::INFINITY),
-                text_signature = "(first, second, stiffness, damping, length, *, breaking_force=float('inf'))")]
+                text_signature = "(first, second, stiffness, damping, length, *, breaking_force=1e999)")]
             fn spring(
                 first: &Any<'_>,
                 second: &Any<'_>,

@@ -10,7 +10,6 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // brackets hold units, such as [m]
-#![allow(clippy::missing_errors_doc)] // all functions raise exceptions of Python
 
 mod body_arrays;
 mod convert;

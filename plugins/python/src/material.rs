@@ -166,13 +166,14 @@ fn stress_law(value: &Any<'_>) -> Option<StressLaw> {
 
 #[pymethods]
 impl Material {
+    // `1e999` is the literal for infinity that `inspect.signature` understands.
     #[new]
     #[pyo3(
         signature = (**fields),
         text_signature = "(*, young=5000.0, poisson=0.3, stress_law='corotational', prony=(), density=100.0, \
             mass_damping=4.0, stiffness_damping=0.0002, friction=0.4, rolling_resistance=20.0, strength=1000.0, \
             hydrostatic_strength=None, strength_scatter=0.4, toughness=150.0, rate_toughening=None, \
-            yield_strain=float('inf'), plastic_limit=2.0)"
+            yield_strain=1e999, plastic_limit=2.0)"
     )]
     fn new(fields: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         Self(fuwafuwa::Material::default()).with_fields("Material", fields)

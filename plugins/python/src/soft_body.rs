@@ -49,7 +49,9 @@ fn materials(value: Option<&Any<'_>>) -> PyResult<Vec<fuwafuwa::Material>> {
     Ok(several.into_iter().map(|material| material.0).collect())
 }
 
+/// Builds a body. Other threads run meanwhile.
 fn built<D: Dim>(
+    py: Python<'_>,
     grid: VoxelGrid<D>,
     materials: Option<&Any<'_>>,
     law: &str,
@@ -60,7 +62,8 @@ fn built<D: Dim>(
         named("law", law, &LAWS)?,
         named("grading", grading, &GRADINGS)?,
     );
-    SoftBody::with_options(grid, &materials, law, grading).or_invalid()
+    py.detach(|| SoftBody::with_options(grid, &materials, law, grading))
+        .or_invalid()
 }
 
 /// Encodes a body as the snapshot of a world with one body.
@@ -113,12 +116,13 @@ macro_rules! soft_body_class {
             #[new]
             #[pyo3(signature = (grid, materials=None, *, law="corotational_vem", grading="graded"))]
             fn new(
+                py: Python<'_>,
                 grid: $grid,
                 materials: Option<&Any<'_>>,
                 law: &str,
                 grading: &str,
             ) -> PyResult<Self> {
-                built(grid.grid, materials, law, grading).map(Self)
+                built(py, grid.grid, materials, law, grading).map(Self)
             }
 
             /// Returns a body from an array of material numbers (uint8, or bool for material 1) and the edge length of a
@@ -126,19 +130,21 @@ macro_rules! soft_body_class {
             #[staticmethod]
             #[pyo3(signature = (array, voxel_size, materials=None, *, law="corotational_vem", grading="graded"))]
             fn from_array(
+                py: Python<'_>,
                 array: &Any<'_>,
                 voxel_size: f32,
                 materials: Option<&Any<'_>>,
                 law: &str,
                 grading: &str,
             ) -> PyResult<Self> {
-                built(from_array::<$dim>(array, voxel_size)?, materials, law, grading).map(Self)
+                built(py, from_array::<$dim>(array, voxel_size)?, materials, law, grading).map(Self)
             }
 
             /// Returns a body of voxels that covers a bounded shape, at the position of the shape.
             #[staticmethod]
             #[pyo3(signature = (shape, voxel_size, materials=None, *, law="corotational_vem", grading="graded"))]
             fn from_shape(
+                py: Python<'_>,
                 shape: $shape,
                 voxel_size: f32,
                 materials: Option<&Any<'_>>,
@@ -146,7 +152,7 @@ macro_rules! soft_body_class {
                 grading: &str,
             ) -> PyResult<Self> {
                 let (grid, origin) = from_shape(&shape.0, voxel_size)?;
-                let body = built(grid, materials, law, grading)?;
+                let body = built(py, grid, materials, law, grading)?;
                 Ok(Self(body.translated(origin)))
             }
 
@@ -154,6 +160,7 @@ macro_rules! soft_body_class {
             #[staticmethod]
             #[pyo3(signature = (n, diameter=1.0, materials=None, *, law="corotational_vem", grading="graded"))]
             fn ball(
+                py: Python<'_>,
                 n: usize,
                 diameter: f32,
                 materials: Option<&Any<'_>>,
@@ -161,13 +168,14 @@ macro_rules! soft_body_class {
                 grading: &str,
             ) -> PyResult<Self> {
                 let grid = VoxelGrid::ball(n, diameter).or_invalid()?;
-                built(grid, materials, law, grading).map(Self)
+                built(py, grid, materials, law, grading).map(Self)
             }
 
             /// Returns a cube (in 2D a square), `n` voxels wide. Its low corner is at the origin.
             #[staticmethod]
             #[pyo3(signature = (n, width=1.0, materials=None, *, law="corotational_vem", grading="graded"))]
             fn cube(
+                py: Python<'_>,
                 n: usize,
                 width: f32,
                 materials: Option<&Any<'_>>,
@@ -175,7 +183,7 @@ macro_rules! soft_body_class {
                 grading: &str,
             ) -> PyResult<Self> {
                 let grid = VoxelGrid::cube(n, width).or_invalid()?;
-                built(grid, materials, law, grading).map(Self)
+                built(py, grid, materials, law, grading).map(Self)
             }
 
             /// Returns a copy, translated by a vector [m].

@@ -768,7 +768,7 @@ macro_rules! world_class {
             #[pyo3(
                 signature = (origin, direction, max_distance=f32::INFINITY, *, exclude=None, only=None, layers=None,
                     sensors=false),
-                text_signature = "(origin, direction, max_distance=float('inf'), *, exclude=None, only=None, layers=None, \
+                text_signature = "(origin, direction, max_distance=1e999, *, exclude=None, only=None, layers=None, \
                     sensors=False)"
             )]
             #[allow(clippy::too_many_arguments)] // keyword arguments of Python
@@ -795,7 +795,7 @@ macro_rules! world_class {
             /// object, element (id), material, point [m], normal and distance [m]. The filters are those of `ray_cast`.
             #[pyo3(
                 signature = (point, max_distance=f32::INFINITY, *, exclude=None, only=None, layers=None, sensors=false),
-                text_signature = "(point, max_distance=float('inf'), *, exclude=None, only=None, layers=None, sensors=False)"
+                text_signature = "(point, max_distance=1e999, *, exclude=None, only=None, layers=None, sensors=False)"
             )]
             #[allow(clippy::too_many_arguments)] // keyword arguments of Python
             fn closest_point<'py>(
@@ -850,13 +850,15 @@ macro_rules! world_class {
 
             /// Returns the state as bytes, for `restore`.
             fn snapshot<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-                PyBytes::new(py, &snapshot::save(&self.world))
+                let world = &self.world;
+                PyBytes::new(py, &py.detach(|| snapshot::save(world)))
             }
 
             /// Returns the world of a snapshot. It has the same hash and goes on with the same bits.
             #[staticmethod]
-            fn restore(snapshot: &[u8]) -> PyResult<Self> {
-                fuwafuwa::snapshot::load::<$dim>(snapshot).or_invalid().map(Self::from)
+            fn restore(py: Python<'_>, snapshot: &[u8]) -> PyResult<Self> {
+                let world = py.detach(|| fuwafuwa::snapshot::load::<$dim>(snapshot));
+                world.or_invalid().map(Self::from)
             }
 
             /// Returns a copy, which shares the mesh with this world until either tears. Handles are valid in both.

@@ -46,6 +46,15 @@ def test_everything_public_has_a_docstring():
     assert bare == []
 
 
+def test_every_function_has_a_signature():
+    for name, thing in public_members():
+        if not callable(thing) or name.endswith(("Handle", "View2", "View3")) or thing is fw.Error:
+            continue
+        constructs = not inspect.isclass(thing) or "__new__" in vars(thing)
+        if constructs:
+            assert inspect.signature(thing), name
+
+
 def test_examples_of_the_readme_run():
     examples = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
     assert examples
