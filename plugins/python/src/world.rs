@@ -768,7 +768,7 @@ macro_rules! world_class {
             #[pyo3(
                 signature = (origin, direction, max_distance=f32::INFINITY, *, exclude=None, only=None, layers=None,
                     sensors=false),
-                text_signature = "(origin, direction, max_distance=1e999, *, exclude=None, only=None, layers=None, \
+                text_signature = "($self, origin, direction, max_distance=1e999, *, exclude=None, only=None, layers=None, \
                     sensors=False)"
             )]
             #[allow(clippy::too_many_arguments)] // keyword arguments of Python
@@ -795,7 +795,7 @@ macro_rules! world_class {
             /// object, element (id), material, point [m], normal and distance [m]. The filters are those of `ray_cast`.
             #[pyo3(
                 signature = (point, max_distance=f32::INFINITY, *, exclude=None, only=None, layers=None, sensors=false),
-                text_signature = "(point, max_distance=1e999, *, exclude=None, only=None, layers=None, sensors=False)"
+                text_signature = "($self, point, max_distance=1e999, *, exclude=None, only=None, layers=None, sensors=False)"
             )]
             #[allow(clippy::too_many_arguments)] // keyword arguments of Python
             fn closest_point<'py>(
