@@ -4,6 +4,8 @@ Units are metres, kilograms, seconds, newtons and pascals; y points up. Classes 
 that end in 3 for space. `World2` and `World3` are the place to start.
 """
 
+from typing import TYPE_CHECKING, Any
+
 from ._core import (
     Error,
     GripHandle,
@@ -35,6 +37,10 @@ from ._core import (
     library_values,
 )
 
+if TYPE_CHECKING:
+    from ._sweep import SweepError as SweepError
+    from ._sweep import sweep as sweep
+
 __all__ = [
     "Error",
     "GripHandle",
@@ -65,3 +71,18 @@ __all__ = [
     "library",
     "library_values",
 ]
+
+#: Names that are imported when they are first used, and their modules.
+_LAZY = {"SweepError": "_sweep", "sweep": "_sweep"}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LAZY:
+        import importlib
+
+        return getattr(importlib.import_module(f".{_LAZY[name]}", __name__), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_LAZY})
