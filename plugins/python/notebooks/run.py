@@ -2,21 +2,24 @@
 
     python run.py                 # all notebooks
     python run.py first_body      # one of them
-    python run.py --write         # stores the new outputs, after a change
+    python run.py --write         # stores the new outputs, and the pictures of docs/python
 
-A notebook fails if a cell raises, if a cell prints other text than the stored one, or if it prints nothing. Pictures are
-not compared, because they depend on the version of matplotlib.
+A notebook fails if a cell raises, if a cell prints other text than the stored one, or if nothing is printed. Pictures
+are not compared, because they depend on the version of matplotlib.
 """
 
 from __future__ import annotations
 
 import argparse
+import base64
 import sys
 import time
 from pathlib import Path
 from typing import Any
 
 FOLDER = Path(__file__).parent
+#: Folder of the pictures of cells with the tag "picture", which the documentation shows.
+PICTURES = FOLDER.parents[2] / "docs" / "python"
 #: Largest size of a stored notebook [bytes].
 LARGEST = 300_000
 
@@ -68,7 +71,7 @@ def check(path: Path) -> Any:
 
 
 def write(path: Path) -> None:
-    """Run a notebook and store its outputs, without what changes from run to run."""
+    """Run a notebook and store its outputs, and the picture for the documentation as docs/python/NAME.png."""
     import nbformat
 
     notebook = execute(path)
@@ -77,7 +80,11 @@ def write(path: Path) -> None:
         "language_info": {"name": "python"},
     }
     for cell in notebook.cells:
-        cell.metadata = {}
+        is_picture = "picture" in cell.metadata.get("tags", [])
+        cell.metadata = {"tags": ["picture"]} if is_picture else {}
+        for part in cell.get("outputs", []) if is_picture else []:
+            PICTURES.mkdir(exist_ok=True)
+            (PICTURES / f"{path.stem}.png").write_bytes(base64.b64decode(part.data["image/png"]))
     text = nbformat.writes(notebook)
     size = len(text.encode())
     if size > LARGEST:
