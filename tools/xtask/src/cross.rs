@@ -157,38 +157,46 @@ impl System {
 impl Compiler {
     /// Returns a cargo command that builds for the system and runs programs in its emulator.
     pub fn cargo(&self, words: &[&str]) -> Command {
-        let System {
-            triple,
-            linker,
-            runner,
-            words: runner_words,
-            ..
-        } = self.system;
-        let name = triple.to_uppercase().replace('-', "_");
         let mut command = cargo();
         let (cargo_words, own) = match words.iter().position(|word| *word == "--") {
             Some(end) => words.split_at(end),
             None => (words, &[][..]),
         };
-        command.args(cargo_words).args(["--target", triple]);
+        command.args(cargo_words);
+        command.args(["--target", self.system.triple]);
+        if self.sources.is_some() {
+            command.arg("-Zbuild-std=std,panic_unwind,test");
+        }
+        self.set_variables(&mut command);
+        command.args(own);
+        command
+    }
+
+    /// Sets the variables with which a command, or a cargo that it starts, builds for the system.
+    pub fn set_variables(&self, command: &mut Command) {
+        let System {
+            triple,
+            linker,
+            runner,
+            words,
+            ..
+        } = self.system;
+        let name = triple.to_uppercase().replace('-', "_");
         command
             .env("CARGO_TARGET_DIR", root().join(target()).join("other"))
             .env(format!("CARGO_TARGET_{name}_LINKER"), linker.0)
             .env(
                 format!("CARGO_TARGET_{name}_RUNNER"),
-                format!("{} {runner_words}", runner.0).trim(),
+                format!("{} {words}", runner.0).trim(),
             )
             // Removes flags for the native build, such as a target-cpu, which do not apply to the target
             // system.
             .env_remove("RUSTFLAGS")
             .env_remove("CARGO_ENCODED_RUSTFLAGS");
         if self.sources.is_some() {
-            command.arg("-Zbuild-std=std,panic_unwind,test");
             command.envs(debian::ENVIRONMENT);
         }
-        self.system.shield(&mut command);
-        command.args(own);
-        command
+        self.system.shield(command);
     }
 }
 

@@ -11,6 +11,7 @@ mod fuzz;
 mod kernel;
 mod package;
 mod packages;
+mod python;
 mod release;
 mod scans;
 mod shell;
@@ -73,6 +74,7 @@ fn main() -> ExitCode {
         Task::Package(wish) => package::run(wish),
         Task::Rapier => run_all(RAPIER),
         Task::Bevy(wish, if_missing) => bevy::run(wish, if_missing),
+        Task::Python(wish, if_missing) => python::run(wish, if_missing),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

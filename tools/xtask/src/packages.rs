@@ -1,6 +1,6 @@
 //! Debian packages that the tasks need, and their installation.
 
-use crate::shell::{Failure, answers, execute};
+use crate::shell::{Failure, answers, execute, output_of};
 use std::env;
 use std::io::{self, IsTerminal, Write};
 use std::process::{Command, Stdio};
@@ -39,6 +39,8 @@ pub enum Purpose {
     Listing,
     /// Build the web page.
     Paging,
+    /// Build and test the Python package.
+    Python,
 }
 
 /// Test for whether a package is installed.
@@ -48,6 +50,8 @@ enum Seen {
     Program(&'static str),
     /// Passes if dpkg lists the package as installed.
     Installed,
+    /// Passes if python3 finds this module, whether or not it comes from the package.
+    Module(&'static str),
 }
 
 /// Package of Debian or Ubuntu that a task needs.
@@ -78,8 +82,8 @@ const fn package(
 /// compiler is omitted, because this program could not have been linked without it.
 #[rustfmt::skip]
 const PACKAGES: &[Package] = {
-    use Purpose::{Browsing, Build, Drawing, Fuzzing, Listing, Packing, Paging, Serving, Staging, Window, Zipping};
-    use Seen::{Installed, Program};
+    use Purpose::{Browsing, Build, Drawing, Fuzzing, Listing, Packing, Paging, Python, Serving, Staging, Window, Zipping};
+    use Seen::{Installed, Module, Program};
     &[
         package("cmake", Program("cmake"), &[Build], "configures SDL, which reads sticks and pads"),
         package("make", Program("make"), &[Build], "builds SDL"),
@@ -98,6 +102,8 @@ const PACKAGES: &[Package] = {
         package("zip", Program("zip"), &[Zipping], "packs archives for Windows and for web servers"),
         package("nodejs", Program("node"), &[Listing, Paging], "packs the page, and collects licences"),
         package("npm", Program("npm"), &[Paging], "installs the tools that optimise the page"),
+        package("python3", Program("python3"), &[Python], "runs the Python package"),
+        package("python3-venv", Module("ensurepip"), &[Python], "makes environments to build and test in"),
         package("libx11-6", Installed, &[Window], "X11 windows"),
         package("libx11-xcb1", Installed, &[Window], "X11 windows"),
         package("libxcursor1", Installed, &[Window], "the mouse pointer in X11 windows"),
@@ -226,7 +232,13 @@ fn missing_on_debian(purposes: &[Purpose]) -> Vec<&'static Package> {
     missing(purposes, |package| match package.seen {
         Seen::Program(program) => answers(program),
         Seen::Installed => is_installed(&statuses, package.name),
+        Seen::Module(module) => imports(module),
     })
+}
+
+/// Whether python3 can import a module.
+fn imports(module: &str) -> bool {
+    output_of("python3", &["-c", &format!("import {module}")]).is_some()
 }
 
 /// Whether a package is installed. `statuses` are lines of name and status from dpkg-query.
@@ -243,6 +255,7 @@ fn say_elsewhere(purposes: &[Purpose]) {
     let lacks = missing(purposes, |package| match package.seen {
         Seen::Program(program) => answers(program),
         Seen::Installed => false,
+        Seen::Module(module) => imports(module),
     });
     let of_this_system = |package: &&&Package| cfg!(target_os = "linux") || package.name == "cmake";
     let names: Vec<&str> = lacks

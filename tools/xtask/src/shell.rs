@@ -43,11 +43,16 @@ pub fn cargo() -> Command {
 /// Prints the command, and runs it at the root of the workspace. `hint` is the advice that is printed if it
 /// fails.
 pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
+    execute_in(root(), command, hint)
+}
+
+/// Prints the command, and runs it in `folder`. See [`execute`].
+pub fn execute_in(folder: &Path, command: &mut Command, hint: &str) -> Result<(), Failure> {
     let line = show(command);
     eprintln!("xtask: {line}");
     // Gives the failure the status [`FAILED`]. The command's own status could equal [`CANNOT`].
     let failure = |how: String| Failure::failed(format!("`{line}` {how}\n       {hint}"));
-    match command.current_dir(root()).status() {
+    match command.current_dir(folder).status() {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(failure(format!("failed ({status})"))),
         Err(error) => Err(failure(format!("could not be started: {error}"))),

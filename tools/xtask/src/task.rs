@@ -3,6 +3,7 @@
 use crate::bevy::Bevy;
 use crate::package::Package;
 use crate::packages::IfMissing;
+use crate::python::Python;
 use crate::release::{self, ReleaseParts};
 use crate::version::Version;
 use crate::web::Web;
@@ -41,11 +42,14 @@ tasks:
   bevy             check plugins/bevy_fuwafuwa, a separate workspace: formatting, lints, tests
                    without a window, documentation
   bevy --pictures  lint its examples, and render pictures of their scene on a virtual display
+  python           check plugins/python, a separate workspace: formatting, lints, a wheel, its size,
+                   and the tests with the wheel in a clean virtual environment
+  python --wheels  build its wheels for any Linux and for Windows in target/python/wheels
   help             print this text, as --help does after any task; help of the game:
                    play -- --help
 
-`wasm`, `web`, `arm`, `windows`, `release`, `kernel`, `stand` and `bevy --pictures` accept
---install, which installs missing packages of Debian (for `kernel` also of Ubuntu), and for
+`wasm`, `web`, `arm`, `windows`, `release`, `kernel`, `stand`, `bevy --pictures` and `python`
+accept --install, which installs missing packages of Debian (for `kernel` also of Ubuntu), and for
 `release` also cargo-deny from crates.io. In `release --install [PART …]`, it must precede
 the parts.
 
@@ -53,7 +57,7 @@ On Debian and Ubuntu, `play`, `test` and `check` install missing system packages
 sudo; if there is a terminal, they ask first. With --no-install they only list them.
 
 exit status: 0 passed, 1 failed, 2 invalid command line, 3 this machine lacks something that `wasm`,
-`web`, `arm`, `windows`, `release`, `kernel`, `scans` or `package --build` needs;
+`web`, `arm`, `windows`, `release`, `kernel`, `scans`, `package --build` or `python` needs;
 `play` returns the exit status of the game";
 
 #[derive(Debug, PartialEq)]
@@ -78,6 +82,7 @@ pub enum Task {
     Package(Package),
     Rapier,
     Bevy(Bevy, IfMissing),
+    Python(Python, IfMissing),
     Help,
 }
 
@@ -129,6 +134,10 @@ impl Task {
             ["bevy"] => Task::Bevy(Bevy::Check, IfMissing::Say),
             ["bevy", "--pictures"] => Task::Bevy(Bevy::Pictures, IfMissing::Say),
             ["bevy", "--pictures", "--install"] => Task::Bevy(Bevy::Pictures, IfMissing::Install),
+            ["python"] => Task::Python(Python::Check, IfMissing::Say),
+            ["python", "--install"] => Task::Python(Python::Check, IfMissing::Install),
+            ["python", "--wheels"] => Task::Python(Python::Wheels, IfMissing::Say),
+            ["python", "--wheels", "--install"] => Task::Python(Python::Wheels, IfMissing::Install),
             ["help"] => Task::Help,
             _ => return Err(format!("unknown task `{}`", arguments.join(" "))),
         };
@@ -264,6 +273,11 @@ mod tests {
             Ok(Task::Bevy(Bevy::Pictures, IfMissing::Install)),
         );
         check("bevy --install", Err("unknown task `bevy --install`"));
+        check("python", Ok(Task::Python(Python::Check, IfMissing::Say)));
+        check(
+            "python --wheels --install",
+            Ok(Task::Python(Python::Wheels, IfMissing::Install)),
+        );
         check("fuzz 1 png", Ok(Task::Fuzz(vec!["1".into(), "png".into()])));
         for line in [
             "help",

@@ -7,11 +7,11 @@ export const root = fileURLToPath(new URL("../../..", import.meta.url));
 
 /**
  * Returns the packages as described by `cargo metadata`, sorted by name and version, and for each id the ids of its dependencies.
- * @param {string} target @param {string[]} programs
+ * @param {string} target @param {string[]} programs @param {string} workspace
  */
-export function inside(target, programs) {
+export function inside(target, programs, workspace = root) {
   const words = ["metadata", "--format-version", "1", "--filter-platform", target];
-  const text = execFileSync(process.env.CARGO ?? "cargo", words, { cwd: root, maxBuffer: 1 << 28 });
+  const text = execFileSync(process.env.CARGO ?? "cargo", words, { cwd: workspace, maxBuffer: 1 << 28 });
   const { packages, resolve } = JSON.parse(text.toString());
   const packageOf = new Map(packages.map((one) => [one.id, one]));
   const nodeOf = new Map(resolve.nodes.map((node) => [node.id, node]));
