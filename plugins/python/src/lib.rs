@@ -7,6 +7,7 @@
 //! - `event`, `query`, `picture`: results
 //! - `body_arrays`, `soft_body`, `rigid_view`: bodies, in and outside of a world
 //! - `world`, `scene`: the simulated world, and worlds as text
+//! - `game`: rounds of the game for learning programs
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(rustdoc::broken_intra_doc_links)] // brackets hold units, such as [m]
@@ -16,6 +17,7 @@ mod convert;
 mod error;
 mod event;
 mod file;
+mod game;
 mod grid;
 mod handle;
 mod joint;
@@ -60,6 +62,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<world::World2>()?;
     module.add_class::<world::World3>()?;
     module.add_class::<scene::Scene>()?;
+    module.add_class::<game::Rounds>()?;
+    module.add_function(wrap_pyfunction!(game::level_names, module)?)?;
+    module.add_function(wrap_pyfunction!(game::verify_replay, module)?)?;
     module.add_function(wrap_pyfunction!(material::library_names, module)?)?;
     module.add_function(wrap_pyfunction!(material::library_values, module)?)?;
     Ok(())

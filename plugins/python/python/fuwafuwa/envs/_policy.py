@@ -1,0 +1,56 @@
+"""Trained players as small files, which need nothing except numpy."""
+
+from __future__ import annotations
+
+import json
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+#: Limit of normalized observations, the `clip_obs` of training.
+_CLIP = 10.0
+
+
+class Policy:
+    """Deterministic player: a network with tanh layers that maps observations to actions.
+
+    - layers: pairs of a weight matrix (outputs, inputs) and a bias (outputs,), float32
+    - mean, scale: observations are normalized to (observation - mean) * scale, both (numbers,)
+    - about: how the policy was trained, as a dict
+    """
+
+    def __init__(
+        self,
+        layers: list[tuple[np.ndarray, np.ndarray]],
+        mean: np.ndarray,
+        scale: np.ndarray,
+        about: dict[str, Any] | None = None,
+    ) -> None:
+        self.layers = layers
+        self.mean = mean
+        self.scale = scale
+        self.about = dict(about or {})
+
+    def __call__(self, observation: np.ndarray) -> np.ndarray:
+        """Return the actions for one observation (numbers,) or several (count, numbers)."""
+        values = np.clip((observation - self.mean) * self.scale, -_CLIP, _CLIP)
+        for weight, bias in self.layers[:-1]:
+            values = np.tanh(values @ weight.T + bias)
+        weight, bias = self.layers[-1]
+        return np.clip(values @ weight.T + bias, -1.0, 1.0).astype(np.float32)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the policy as a file of numpy (npz)."""
+        arrays = {"mean": self.mean, "scale": self.scale, "about": np.array(json.dumps(self.about))}
+        for index, (weight, bias) in enumerate(self.layers):
+            arrays |= {f"weight{index}": weight, f"bias{index}": bias}
+        np.savez_compressed(path, **arrays)
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> Policy:
+        """Read a policy from a file that `save` wrote."""
+        with np.load(path, allow_pickle=False) as file:
+            count = sum(name.startswith("weight") for name in file.files)
+            layers = [(file[f"weight{index}"], file[f"bias{index}"]) for index in range(count)]
+            return cls(layers, file["mean"], file["scale"], json.loads(str(file["about"])))

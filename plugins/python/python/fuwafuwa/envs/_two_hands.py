@@ -1,0 +1,73 @@
+"""Two hands as two agents: an environment of PettingZoo."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+from pettingzoo import ParallelEnv
+
+from ._tamaire import TamaireEnv
+
+
+class TwoHandsEnv(ParallelEnv):
+    """A round of the game for two agents, "hand_0" and "hand_1", which act at the same time and share the reward.
+
+    The keywords are those of `TamaireEnv`, except `hands` and `observation`. Both agents observe the whole state vector:
+    float32 array (numbers,). An action is the velocity of the agent's own hand: float32 array (d,) from -1 to 1.
+    """
+
+    metadata = {"name": "tamaire_v0", "render_modes": ["human", "rgb_array"], "is_parallelizable": True}
+
+    def __init__(self, level: str = "classic", *, render_mode: str | None = None, **settings: Any) -> None:
+        self.env = TamaireEnv(level, hands=2, render_mode=render_mode, **settings)
+        self.render_mode = render_mode
+        self.possible_agents = ["hand_0", "hand_1"]
+        self.agents: list[str] = []
+        d = self.env.rounds.dim
+        self._observation_space = self.env.observation_space
+        self._action_spaces = {agent: spaces.Box(-1.0, 1.0, (d,), np.float32) for agent in self.possible_agents}
+
+    def observation_space(self, agent: str) -> spaces.Space:
+        """Return the space of observations, which is the same for both agents."""
+        return self._observation_space
+
+    def action_space(self, agent: str) -> spaces.Space:
+        """Return the space of actions of an agent."""
+        return self._action_spaces[agent]
+
+    def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[dict, dict]:
+        """Start a new round. Returns the observations and the infos of the agents."""
+        state, info = self.env.reset(seed=seed)
+        self.agents = list(self.possible_agents)
+        return self._each(state), self._each(info)
+
+    def step(self, actions: dict[str, np.ndarray]) -> tuple[dict, dict, dict, dict, dict]:
+        """Hold the actions of both agents for a step."""
+        action = np.concatenate([np.asarray(actions[agent], np.float32) for agent in self.possible_agents])
+        results = self.env.step(action)
+        answer = tuple(self._each(result) for result in results)
+        if results[2] or results[3]:
+            self.agents = []
+        return answer
+
+    def render(self) -> np.ndarray | None:
+        """Return a picture if the render mode is "rgb_array"."""
+        return self.env.render()
+
+    def state(self) -> np.ndarray:
+        """Return the state vector."""
+        return self.env.rounds.observe()[0]
+
+    def replay(self) -> str:
+        """Return the round up to now as the text of a replay file of the game."""
+        return self.env.replay()
+
+    def close(self) -> None:
+        """Close the window."""
+        self.env.close()
+
+    def _each(self, value: Any) -> dict[str, Any]:
+        copies = value.copy if hasattr(value, "copy") else lambda: value
+        return {agent: copies() for agent in self.possible_agents}

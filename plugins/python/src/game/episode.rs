@@ -1,0 +1,251 @@
+//! One round of a learning program: opening, steps, end.
+
+use super::observation::{mean_distance, names, observe};
+use super::reward::{Reward, Standing};
+use fuwafuwa::{DEFAULT_TICK, Dim, DimVector, MotionType, Shape, Vec3};
+use std::sync::Arc;
+use tamaire_play::{AnyRound, InputFrame, Level, Round};
+
+/// Speed of the hands in the opening [m/s].
+const OPENING_SPEED: f32 = 3.0;
+/// Maximum duration of the opening [ticks].
+const OPENING_TICKS: u32 = 90;
+/// Distance from its place at which a hand ends the opening [m].
+const ARRIVED: f32 = 0.03;
+/// Minimum distance between the way of a hand in the opening, and bodies and obstacles, beyond its radius [m].
+const CLEARANCE: f32 = 0.03;
+/// Number of places that are tried for a hand.
+const TRIES: usize = 64;
+/// Number of points of a way that are checked.
+const POINTS: usize = 24;
+
+/// Settings of all episodes.
+pub struct Settings {
+    pub level: Arc<Level>,
+    pub reward: Reward,
+    /// Number of ticks in a step.
+    pub ticks: u32,
+    /// Speed of a hand's target for an action of 1 [m/s].
+    pub max_speed: f32,
+    /// Number of steps after which an episode is truncated; 0 for no limit.
+    pub max_steps: u32,
+    /// Number of pieces beyond which an episode is lost; 0 for no limit.
+    pub max_pieces: usize,
+    /// Number of hands.
+    pub players: usize,
+    /// Whether the hands move to random places before the first step.
+    pub random_start: bool,
+}
+
+impl Settings {
+    /// Returns the number of dimensions.
+    pub fn dim(&self) -> usize {
+        usize::from(self.level.scene().dim)
+    }
+
+    /// Returns the number of numbers in an action.
+    pub fn action_size(&self) -> usize {
+        self.players * self.dim()
+    }
+
+    /// Returns the names of the numbers of an observation.
+    pub fn observation_names(&self) -> Vec<String> {
+        names(self.dim(), self.players)
+    }
+}
+
+/// Result of a step.
+#[derive(Default)]
+pub struct Step {
+    pub reward: f64,
+    /// Whether the round was won or lost.
+    pub terminated: bool,
+    /// Whether the time is up.
+    pub truncated: bool,
+}
+
+/// An episode: a round, its random numbers and its number of steps.
+#[derive(Clone)]
+pub struct Episode {
+    settings: Arc<Settings>,
+    round: AnyRound,
+    random: fastrand::Rng,
+    steps: u32,
+    standing: Standing,
+}
+
+/// Evaluates an expression for the round of either dimension.
+macro_rules! both {
+    ($any:expr, $one:ident => $act:expr) => {
+        match $any {
+            AnyRound::Plane($one) => $act,
+            AnyRound::Space($one) => $act,
+        }
+    };
+}
+
+impl Episode {
+    /// Creates an episode whose round has not begun; see [`Self::reset`].
+    pub fn new(settings: Arc<Settings>) -> Self {
+        let round = AnyRound::new(settings.level.clone());
+        let random = fastrand::Rng::with_seed(0);
+        Self {
+            settings,
+            round,
+            random,
+            steps: 0,
+            standing: Standing::default(),
+        }
+    }
+
+    /// Returns the round.
+    pub fn round(&self) -> &AnyRound {
+        &self.round
+    }
+
+    /// Starts a new round. Without a seed, the random numbers go on.
+    pub fn reset(&mut self, seed: Option<u64>) {
+        if let Some(seed) = seed {
+            self.random = fastrand::Rng::with_seed(seed);
+        }
+        self.round = AnyRound::new(self.settings.level.clone());
+        self.steps = 0;
+        self.open();
+        self.standing = self.standing_now();
+    }
+
+    /// Lets the hands join, and moves them to random places on free ways. The recording holds these ticks too, so the
+    /// replay of the episode is a round of the unchanged level.
+    fn open(&mut self) {
+        let players = self.settings.players;
+        let starts: Vec<Vec3> = (0..players)
+            .map(|player| self.round.start(player))
+            .collect();
+        let towards = |places: &[Vec3]| {
+            let places = places.iter().enumerate();
+            places.fold(InputFrame::default(), |frame, (player, place)| {
+                frame.with(player, *place)
+            })
+        };
+        // A tick lets the second player in.
+        self.round.step(towards(&starts));
+        if !self.settings.random_start {
+            return;
+        }
+        let random = &mut self.random;
+        let places: Vec<Vec3> = match &self.round {
+            AnyRound::Plane(round) => free_places(round, random, players),
+            AnyRound::Space(round) => free_places(round, random, players),
+        };
+        for _ in 0..OPENING_TICKS {
+            let hands = self.round.hands();
+            let is_there = |(hand, place): (&tamaire_play::round::Hand, &Vec3)| {
+                (hand.position - *place).length() < ARRIVED
+            };
+            if hands.iter().zip(&places).all(is_there) {
+                break;
+            }
+            let next = hands.iter().zip(&places).map(|(hand, place)| {
+                let way = *place - hand.target;
+                let most = OPENING_SPEED * DEFAULT_TICK;
+                hand.target + way * (most / way.length().max(1e-6)).min(1.0)
+            });
+            let next: Vec<Vec3> = next.collect();
+            self.round.step(towards(&next));
+        }
+    }
+
+    /// Moves the hands for the ticks of a step, with an action from −1 to 1 for each axis of each hand.
+    pub fn step(&mut self, action: &[f32]) -> Step {
+        let dim = self.settings.dim();
+        let mut velocities = [Vec3::ZERO; tamaire_play::PLAYERS];
+        for (velocity, numbers) in velocities.iter_mut().zip(action.chunks_exact(dim)) {
+            for (axis, number) in numbers.iter().enumerate() {
+                velocity[axis] = number.clamp(-1.0, 1.0) * self.settings.max_speed;
+            }
+        }
+        for _ in 0..self.settings.ticks {
+            if self.round.progress().outcome.is_some() {
+                break;
+            }
+            let targets: Vec<Vec3> = both!(&self.round, round => {
+                round.hands().map(|hand| hand.target_position().to_vec3()).collect()
+            });
+            let frame = targets.iter().zip(velocities).enumerate().fold(
+                InputFrame::default(),
+                |frame, (player, (target, velocity))| {
+                    frame.with(player, *target + velocity * DEFAULT_TICK)
+                },
+            );
+            self.round.step(frame);
+        }
+        self.steps += 1;
+        let before = self.standing;
+        self.standing = self.standing_now();
+        let progress = self.round.progress();
+        let settings = &self.settings;
+        let is_lost = settings.max_pieces > 0 && progress.pieces > settings.max_pieces;
+        let terminated = progress.outcome.is_some() || is_lost;
+        Step {
+            reward: f64::from(settings.reward.of(before, self.standing, progress)),
+            terminated,
+            truncated: !terminated && settings.max_steps > 0 && self.steps >= settings.max_steps,
+        }
+    }
+
+    /// Returns the observation.
+    pub fn observe(&self) -> Vec<f32> {
+        let time_left = match self.settings.max_steps {
+            0 => 1.0,
+            most => 1.0 - (self.steps as f32 / most as f32).min(1.0),
+        };
+        let players = self.settings.players;
+        both!(&self.round, round => observe(round, players, time_left))
+    }
+
+    fn standing_now(&self) -> Standing {
+        let distance = both!(&self.round, round => mean_distance(round));
+        self.settings.reward.standing(&self.round, distance)
+    }
+}
+
+/// Returns a random place for each hand to which a straight, free way leads; the hand's own place if none is found [m].
+fn free_places<D: Dim>(round: &Round<D>, random: &mut fastrand::Rng, players: usize) -> Vec<Vec3> {
+    let [low, high] = round.level().arena();
+    let fixed = round.world().rigid_bodies().map(|(_, body)| body);
+    let fixed =
+        fixed.filter(|body| body.motion_type() != MotionType::Kinematic && !body.is_sensor());
+    let hands: Vec<_> = round.hands().take(players).collect();
+    let is_hand = |position: D::Vector| hands.iter().any(|hand| hand.position() == position);
+    let obstacles: Vec<Shape<D>> = fixed
+        .filter(|body| !is_hand(body.position()))
+        .map(|body| body.shape())
+        .collect();
+    let mut place_of = |from: Vec3, radius: f32| {
+        let is_free = |at: Vec3| {
+            let at = D::Vector::from_vec3(at);
+            let margin = radius + CLEARANCE;
+            obstacles.iter().all(|shape| shape.distance(at).0 > margin)
+                && round.distance_to_bodies(at) > margin
+        };
+        let mut place = || {
+            let shares = Vec3::from([0; 3].map(|_: i32| random.f32()));
+            let mut place = low + shares * (high - low);
+            if D::N == 2 {
+                place.z = 0.0;
+            }
+            place
+        };
+        let leads_free = |to: &Vec3| {
+            let points = (1..=POINTS).map(|point| point as f32 / POINTS as f32);
+            points
+                .rev()
+                .all(|share| is_free(from + (*to - from) * share))
+        };
+        (0..TRIES).map(|_| place()).find(leads_free).unwrap_or(from)
+    };
+    let hands = hands
+        .iter()
+        .map(|hand| (hand.position().to_vec3(), hand.shape().inradius()));
+    hands.map(|(from, radius)| place_of(from, radius)).collect()
+}
