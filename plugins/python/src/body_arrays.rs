@@ -3,11 +3,12 @@
 //! Node `i` of an array is the node with the `i`-th smallest id, likewise for elements. Arrays of one body at one
 //! moment belong together; when the body tears, nodes and elements come and go.
 
-use crate::convert::{Any, described, rows, vector_rows};
+use crate::convert::{Any, described, rows, vector_array, vector_rows};
 use crate::error::{OrInvalid, invalid_parameter};
-use fuwafuwa::{Dim, DimVector, ElementState, ElementView, NodeId, SoftBody, Vec3};
+use fuwafuwa::inspect::Element;
+use fuwafuwa::{Dim, DimVector, ElementId, ElementState, NodeId, Shape, SoftBody, Vec3};
 use numpy::ndarray::Array3;
-use numpy::{Element, IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -26,7 +27,7 @@ fn node_rows<D: Dim>(body: &SoftBody<D>) -> Vec<i32> {
 }
 
 /// Returns an array with a value for each node.
-pub fn of_nodes<'py, D: Dim, T: Element>(
+pub fn of_nodes<'py, D: Dim, T: numpy::Element>(
     py: Python<'py>,
     body: &SoftBody<D>,
     value: impl FnMut(NodeId) -> T,
@@ -53,12 +54,14 @@ pub fn rest_positions<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> Any<'
 }
 
 /// Returns an array with a value for each element.
-pub fn of_elements<'py, D: Dim, T: Element>(
+pub fn of_elements<'py, D: Dim, T: numpy::Element>(
     py: Python<'py>,
     body: &SoftBody<D>,
-    value: impl FnMut(ElementView) -> T,
+    mut value: impl FnMut(ElementId, &Element) -> T,
 ) -> Any<'py> {
-    PyArray1::from_vec(py, body.element_views().map(value).collect()).into_any()
+    let elements = body.mesh().elements();
+    let values = elements.map(|(id, element)| value(id, element)).collect();
+    PyArray1::from_vec(py, values).into_any()
 }
 
 /// Returns an array with the node of each slot of each element, by row; -1 for slots without a node.
@@ -202,23 +205,18 @@ pub fn outlines<'py, D: Dim>(py: Python<'py>, body: &SoftBody<D>) -> PyResult<Bo
 pub fn chosen_nodes<D: Dim>(body: &SoftBody<D>, nodes: &Any<'_>) -> PyResult<Vec<NodeId>> {
     let ids: Vec<NodeId> = node_ids(body).collect();
     let count = ids.len();
-    let expected = || {
-        format!(
-            "a bool array of {count} nodes, or rows from 0 to {}",
-            count - 1
-        )
-    };
-    if let Ok(mask) = nodes.extract::<PyReadonlyArray1<'_, bool>>() {
-        let mask = mask.as_array();
+    let expected = || format!("a bool array of {count} nodes, or rows below {count}");
+    // A list of bools is a mask, too: Python takes True and False for the integers 1 and 0. An empty list has no rows.
+    let mask: PyResult<Vec<bool>> = nodes.extract();
+    if let Some(mask) = mask.ok().filter(|mask| !mask.is_empty()) {
         if mask.len() != count {
             return Err(invalid_parameter("nodes", expected(), described(nodes)));
         }
-        return Ok(ids
-            .iter()
+        let chosen = ids
+            .into_iter()
             .zip(mask)
-            .filter(|(_, chosen)| **chosen)
-            .map(|(id, _)| *id)
-            .collect());
+            .filter(|&(_, is_chosen)| is_chosen);
+        return Ok(chosen.map(|(id, _)| id).collect());
     }
     let rows: Vec<i64> = nodes
         .extract()
@@ -231,8 +229,13 @@ pub fn chosen_nodes<D: Dim>(body: &SoftBody<D>, nodes: &Any<'_>) -> PyResult<Vec
     rows.into_iter().map(id).collect()
 }
 
-/// Returns the finite vectors of an array, one for each of `count` nodes.
-fn vectors<D: Dim>(field: &str, value: &Any<'_>, count: usize) -> PyResult<Vec<D::Vector>> {
+/// Returns the vectors of an array, one for each of `count` nodes, with coordinates from `-most` to `most`.
+fn vectors<D: Dim>(
+    field: &str,
+    value: &Any<'_>,
+    count: usize,
+    most: f32,
+) -> PyResult<Vec<D::Vector>> {
     let wrong = || {
         let expected = format!(
             "an array of float32 or float64 of shape [{count}, {}]",
@@ -240,24 +243,26 @@ fn vectors<D: Dim>(field: &str, value: &Any<'_>, count: usize) -> PyResult<Vec<D
         );
         invalid_parameter(field, expected, described(value))
     };
+    let array = value.cast::<PyUntypedArray>();
+    if !array.is_ok_and(|array| array.is_aligned() && array.shape() == [count, D::N]) {
+        return Err(wrong());
+    }
     let numbers: Vec<f32> = if let Ok(array) = value.extract::<PyReadonlyArray2<'_, f32>>() {
-        let array = array.as_array();
-        if array.shape() != [count, D::N] {
-            return Err(wrong());
-        }
-        array.iter().copied().collect()
+        array.as_array().iter().copied().collect()
     } else if let Ok(array) = value.extract::<PyReadonlyArray2<'_, f64>>() {
-        let array = array.as_array();
-        if array.shape() != [count, D::N] {
-            return Err(wrong());
-        }
-        array.iter().map(|&number| number as f32).collect()
+        let numbers = array.as_array();
+        numbers.iter().map(|&number| number as f32).collect()
     } else {
         return Err(wrong());
     };
-    if let Some(place) = numbers.iter().position(|number| !number.is_finite()) {
+    let is_wrong = |number: &f32| number.is_nan() || number.abs() > most;
+    if let Some(place) = numbers.iter().position(is_wrong) {
+        let expected = match most < f32::MAX {
+            true => format!("within {most} m of the origin on each axis"),
+            false => "finite".to_owned(),
+        };
         let given = format!("{} at node {}", numbers[place], place / D::N);
-        return Err(invalid_parameter(field, "finite", given));
+        return Err(invalid_parameter(field, expected, given));
     }
     Ok(numbers.chunks_exact(D::N).map(vector_of::<D>).collect())
 }
@@ -285,14 +290,14 @@ pub fn node_states<D: Dim>(
     });
     let mut states: NodeStates<D> = present.collect();
     if let Some(positions) = positions {
-        let given = vectors::<D>("positions", positions, states.len())?;
+        let given = vectors::<D>("positions", positions, states.len(), body.range())?;
         states
             .iter_mut()
             .zip(given)
             .for_each(|(state, position)| state.1 = position);
     }
     if let Some(velocities) = velocities {
-        let given = vectors::<D>("velocities", velocities, states.len())?;
+        let given = vectors::<D>("velocities", velocities, states.len(), f32::MAX)?;
         states
             .iter_mut()
             .zip(given)
@@ -305,6 +310,23 @@ pub fn node_states<D: Dim>(
 pub fn set_node_states<D: Dim>(body: &mut SoftBody<D>, states: NodeStates<D>) -> PyResult<()> {
     let set = |(id, position, velocity)| body.set_node_state(id, position, velocity);
     states.into_iter().try_for_each(set).or_invalid()
+}
+
+/// Returns the sums over the part of a body inside a shape.
+pub fn sums<'py, D: Dim>(
+    py: Python<'py>,
+    body: &SoftBody<D>,
+    region: &Shape<D>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let sums = body.sums_inside(region).or_invalid()?;
+    let dict = PyDict::new(py);
+    dict.set_item("nodes", sums.nodes)?;
+    dict.set_item("mass", sums.mass)?;
+    dict.set_item("centre", vector_array(py, sums.centre))?;
+    dict.set_item("momentum", vector_array(py, sums.momentum))?;
+    dict.set_item("elastic_force", vector_array(py, sums.elastic_force))?;
+    dict.set_item("elastic_energy", sums.elastic_energy)?;
+    Ok(dict)
 }
 
 /// Returns rows of nodes as an array.

@@ -14,12 +14,22 @@ pub type Any<'py> = Bound<'py, PyAny>;
 
 /// Returns the numbers of a sequence or array. `expected` describes them for the error text.
 fn numbers(field: &str, expected: &str, value: &Any<'_>) -> PyResult<Vec<f32>> {
-    value.extract().map_err(|_: PyErr| {
-        let given = value
-            .repr()
-            .map_or_else(|_| "?".into(), |text| text.to_string());
-        invalid_parameter(field, expected, given)
-    })
+    value
+        .extract()
+        .map_err(|_: PyErr| invalid_parameter(field, expected, repr(value)))
+}
+
+/// Returns the text of a value for an error: its `repr`, shortened.
+pub fn repr(value: &Any<'_>) -> String {
+    const LONGEST: usize = 200;
+    let Ok(text) = value.repr() else {
+        return "?".into();
+    };
+    let text = text.to_string();
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text,
+    }
 }
 
 /// Returns a vector with as many finite numbers as the world has dimensions.
@@ -37,6 +47,17 @@ pub fn vector<D: Dim>(field: &str, value: &Any<'_>) -> PyResult<D::Vector> {
         vector[axis] = number;
     }
     Ok(D::Vector::from_vec3(vector))
+}
+
+/// Returns two vectors from a pair. `expected` describes the pair for the error text.
+pub fn vector_pair<D: Dim>(
+    field: &str,
+    expected: &str,
+    value: &Any<'_>,
+) -> PyResult<[D::Vector; 2]> {
+    let pair: PyResult<(Any<'_>, Any<'_>)> = value.extract();
+    let (first, second) = pair.map_err(|_| invalid_parameter(field, expected, repr(value)))?;
+    Ok([vector::<D>(field, &first)?, vector::<D>(field, &second)?])
 }
 
 /// Returns a vector, or 0 if the argument is missing.
@@ -86,12 +107,7 @@ pub fn rotation<D: Dim>(value: Option<&Any<'_>>) -> PyResult<Rotation> {
     let Some(value) = value else {
         return Ok(Rotation::NONE);
     };
-    let wrong = |expected: &str| {
-        let given = value
-            .repr()
-            .map_or_else(|_| "?".into(), |text| text.to_string());
-        invalid_parameter(FIELD, expected, given)
-    };
+    let wrong = |expected: &str| invalid_parameter(FIELD, expected, repr(value));
     if D::N == 2 {
         let expected = "a finite angle in radians";
         let angle: f32 = value.extract().map_err(|_: PyErr| wrong(expected))?;
@@ -160,10 +176,25 @@ pub fn vector_rows<V: DimVector>(
     rows(py, V::N, values)
 }
 
+/// Returns an array of torques: (n,) in 2D, (n, 3) in 3D.
+pub fn angular_rows<D: Dim>(py: Python<'_>, values: impl Iterator<Item = D::Angular>) -> Any<'_> {
+    let vectors = values.map(DimAngular::to_vec3);
+    match D::N {
+        2 => PyArray1::from_vec(py, vectors.map(|vector| vector.z).collect()).into_any(),
+        _ => vector_rows(py, vectors).into_any(),
+    }
+}
+
 /// Describes an array for an error text.
 pub fn described(value: &Any<'_>) -> String {
     match value.cast::<PyUntypedArray>() {
-        Ok(array) => format!("{} of shape {:?}", array.dtype(), array.shape()),
+        Ok(array) => {
+            let text = format!("{} of shape {:?}", array.dtype(), array.shape());
+            match array.is_aligned() {
+                true => text,
+                false => text + ", misaligned in memory",
+            }
+        }
         Err(_) => value
             .get_type()
             .name()

@@ -3,6 +3,7 @@
 use pyo3::create_exception;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
+use std::cell::RefCell;
 use std::fmt::Display;
 use std::io;
 use std::path::Path;
@@ -33,8 +34,9 @@ pub fn invalid_parameter(
     })
 }
 
-/// Returns the exception for a file that cannot be read: the subclass of `OSError` that belongs to the error code.
-pub fn unreadable(path: &Path, error: &io::Error) -> PyErr {
+/// Returns the exception for a file that cannot be read or written: the subclass of `OSError` that belongs to the error
+/// code.
+pub fn file_error(path: &Path, error: &io::Error) -> PyErr {
     let path = path.display().to_string();
     match error.raw_os_error() {
         Some(code) => {
@@ -43,6 +45,28 @@ pub fn unreadable(path: &Path, error: &io::Error) -> PyErr {
             PyOSError::new_err((code, text[..end].to_owned(), path))
         }
         None => PyOSError::new_err(format!("{path}: {error}")),
+    }
+}
+
+/// First exception of a function of Python that the engine calls and that cannot stop the engine.
+#[derive(Default)]
+pub struct FirstException(RefCell<Option<PyErr>>);
+
+impl FirstException {
+    /// Returns the result of a call. Returns `otherwise` if the call raises an exception, or an earlier one did.
+    pub fn catch<R>(&self, otherwise: R, call: impl FnOnce() -> PyResult<R>) -> R {
+        if self.0.borrow().is_some() {
+            return otherwise;
+        }
+        call().unwrap_or_else(|error| {
+            self.0.replace(Some(error));
+            otherwise
+        })
+    }
+
+    /// Returns `result`, or the exception.
+    pub fn or<R>(self, result: R) -> PyResult<R> {
+        self.0.into_inner().map_or(Ok(result), Err)
     }
 }
 

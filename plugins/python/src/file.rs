@@ -1,7 +1,7 @@
 //! Files as arguments: paths, or the bytes themselves.
 
 use crate::convert::Any;
-use crate::error::unreadable;
+use crate::error::file_error;
 use fuwafuwa_scenes::disk::read_bytes;
 use fuwafuwa_scenes::import::{Colours, ImportNote};
 use pyo3::exceptions::{PyTypeError, PyUserWarning};
@@ -28,7 +28,7 @@ impl File {
         let path: PathBuf = source.extract().map_err(|_: PyErr| {
             PyTypeError::new_err("a file must be a path (str or os.PathLike) or bytes")
         })?;
-        let bytes = read_bytes(&path, most).map_err(|error| unreadable(&path, &error))?;
+        let bytes = read_bytes(&path, most).map_err(|error| file_error(&path, &error))?;
         let name = path.display().to_string();
         Ok(Self { name, bytes })
     }

@@ -1,10 +1,12 @@
 //! Voxel grids, from arrays, shapes and files.
 
 use crate::convert::{Any, described};
-use crate::error::{OrInvalid, invalid, invalid_parameter};
+use crate::error::{FirstException, OrInvalid, invalid, invalid_parameter};
 use crate::file::{File, colours, shown, texts};
 use crate::shape::{Shape2, Shape3};
-use fuwafuwa::{Dim, Dim2, Dim3, DimVector, Shape, Vec3, VoxelGrid};
+use fuwafuwa::{
+    Dim, Dim2, Dim3, DimVector, MAX_EXTENT, MAX_VOXELS, Shape, VOXEL_SIZES, Vec3, VoxelGrid,
+};
 use fuwafuwa_scan::{Options, Organ, Scan, Segmentation, warnings};
 use fuwafuwa_scenes::import::{MAX_FILE_BYTES, Model, Picture, PictureOptions};
 use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn, ShapeBuilder};
@@ -12,7 +14,6 @@ use numpy::{IntoPyArray, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
-use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
@@ -25,9 +26,21 @@ fn size_of<D: Dim>(shape: &[usize]) -> Option<[usize; 3]> {
     }
 }
 
-/// Returns the values in the order of the engine: the first axis fastest.
-fn values<T: Copy, R>(array: &ArrayViewD<'_, T>, convert: impl Fn(T) -> R) -> Vec<R> {
-    array.t().iter().map(|&value| convert(value)).collect()
+/// Returns a grid from the values of an array, or `None` if the array has another number of axes.
+fn from_values<D: Dim, T: Copy>(
+    array: &ArrayViewD<'_, T>,
+    voxel_size: f32,
+    material: impl Fn(T) -> u8,
+) -> Option<PyResult<VoxelGrid<D>>> {
+    let size = size_of::<D>(array.shape())?;
+    // A view can be much larger than its memory. The engine rejects such a grid by its size alone.
+    let materials =
+        match size.iter().all(|&extent| extent <= MAX_EXTENT) && array.len() <= MAX_VOXELS {
+            // The engine has the first axis fastest.
+            true => array.t().iter().map(|&value| material(value)).collect(),
+            false => Vec::new(),
+        };
+    Some(VoxelGrid::from_materials(size, voxel_size, materials).or_invalid())
 }
 
 /// Returns a grid from an array with one axis for each dimension.
@@ -36,17 +49,13 @@ pub fn from_array<D: Dim>(array: &Any<'_>, voxel_size: f32) -> PyResult<VoxelGri
         let expected = format!("an array of uint8 or bool with {} axes", D::N);
         invalid_parameter("array", expected, described(array))
     };
-    let (shape, materials) = if let Ok(numbers) = array.extract::<PyReadonlyArrayDyn<'_, u8>>() {
-        let numbers = numbers.as_array();
-        (numbers.shape().to_vec(), values(&numbers, |number| number))
-    } else if let Ok(flags) = array.extract::<PyReadonlyArrayDyn<'_, bool>>() {
-        let flags = flags.as_array();
-        (flags.shape().to_vec(), values(&flags, u8::from))
-    } else {
-        return Err(wrong());
-    };
-    let size = size_of::<D>(&shape).ok_or_else(wrong)?;
-    VoxelGrid::from_materials(size, voxel_size, materials).or_invalid()
+    if let Ok(numbers) = array.extract::<PyReadonlyArrayDyn<'_, u8>>() {
+        return from_values(&numbers.as_array(), voxel_size, |number| number).ok_or_else(wrong)?;
+    }
+    if let Ok(flags) = array.extract::<PyReadonlyArrayDyn<'_, bool>>() {
+        return from_values(&flags.as_array(), voxel_size, u8::from).ok_or_else(wrong)?;
+    }
+    Err(wrong())
 }
 
 /// Returns a grid that covers a shape, and the position of its low corner [m].
@@ -54,6 +63,11 @@ pub fn from_shape<D: Dim>(
     shape: &Shape<D>,
     voxel_size: f32,
 ) -> PyResult<(VoxelGrid<D>, D::Vector)> {
+    if !VOXEL_SIZES.contains(&voxel_size) {
+        let (low, high) = (VOXEL_SIZES.start(), VOXEL_SIZES.end());
+        let (expected, given) = (format!("{low} to {high} m"), format!("{voxel_size:?}"));
+        return Err(invalid_parameter("voxel_size", expected, given));
+    }
     let [low, high] = shape.bounds();
     if !low.is_finite() || !high.is_finite() {
         let expected = "bounded: a ball, a box or a capsule";
@@ -89,23 +103,15 @@ fn from_distance<D: Dim>(
             format!("{size:?}"),
         )
     })?;
-    let failure = RefCell::new(None);
+    let exception = FirstException::default();
     let at = |point: Vec3| {
-        if failure.borrow().is_some() {
-            return 1.0;
-        }
-        let call = || {
+        exception.catch(1.0, || {
             let point = PyTuple::new(py, &point.to_array()[..D::N])?;
-            distance.call1((point,))?.extract::<f32>()
-        };
-        call().unwrap_or_else(|error| {
-            *failure.borrow_mut() = Some(error);
-            1.0
+            distance.call1((point,))?.extract()
         })
     };
     let grid = VoxelGrid::from_distance(size, voxel_size, at);
-    failure.into_inner().map_or(Ok(()), Err)?;
-    grid.or_invalid()
+    exception.or(grid)?.or_invalid()
 }
 
 /// Returns an array of the voxels, with one axis for each dimension.
@@ -156,42 +162,43 @@ macro_rules! grid_class {
                 from_array(array, voxel_size).map(Self::from)
             }
 
-            /// Returns a ball (in 2D a disc), `n` voxels across.
+            /// Returns a ball (in 2D a disc) with a diameter [m], `n` voxels across.
             #[staticmethod]
             #[pyo3(signature = (n, diameter=1.0))]
             fn ball(n: usize, diameter: f32) -> PyResult<Self> {
                 VoxelGrid::ball(n, diameter).or_invalid().map(Self::from)
             }
 
-            /// Returns a cube (in 2D a square), `n` voxels wide.
+            /// Returns a cube (in 2D a square) with a width [m], `n` voxels wide.
             #[staticmethod]
             #[pyo3(signature = (n, width=1.0))]
             fn cube(n: usize, width: f32) -> PyResult<Self> {
                 VoxelGrid::cube(n, width).or_invalid().map(Self::from)
             }
 
-            /// Returns a ring, `n` voxels across.
+            /// Returns a ring (in 3D a torus) with an outer diameter [m], `n` voxels across.
             #[staticmethod]
             #[pyo3(signature = (n, diameter=1.0))]
             fn ring(n: usize, diameter: f32) -> PyResult<Self> {
                 VoxelGrid::ring(n, diameter).or_invalid().map(Self::from)
             }
 
-            /// Returns a heart, `n` voxels wide.
+            /// Returns a heart with a width [m], `n` voxels wide.
             #[staticmethod]
             #[pyo3(signature = (n, width=1.0))]
             fn heart(n: usize, width: f32) -> PyResult<Self> {
                 VoxelGrid::heart(n, width).or_invalid().map(Self::from)
             }
 
-            /// Returns a flower, `n` voxels wide.
+            /// Returns a flower with a width [m], `n` voxels wide.
             #[staticmethod]
             #[pyo3(signature = (n, width=1.0))]
             fn flower(n: usize, width: f32) -> PyResult<Self> {
                 VoxelGrid::flower(n, width).or_invalid().map(Self::from)
             }
 
-            /// Returns a grid of material 1 that covers a bounded shape and knows its surface. The position of the shape
+            /// Returns a grid of material 1 that covers a bounded shape and knows its surface, from the shape and the edge
+            /// length of a voxel [m]. The position of the shape
             #[doc = concat!("is lost: `SoftBody", $dims, ".from_shape` keeps it.")]
             #[staticmethod]
             fn from_shape(shape: $shape, voxel_size: f32) -> PyResult<Self> {

@@ -1,6 +1,6 @@
 //! Handles of the objects in a world.
 
-use crate::convert::{Any, pickled, unpickled};
+use crate::convert::{Any, pickled, repr, unpickled};
 use crate::error::invalid_parameter;
 use fuwafuwa::{BodyHandle, ObjectRef, ObjectSelector, PieceId};
 use pyo3::prelude::*;
@@ -100,10 +100,7 @@ pub fn selector(field: &str, value: &Any<'_>) -> PyResult<ObjectSelector> {
     }
     let expected =
         "a SoftBodyHandle, a RigidBodyHandle, or a tuple of SoftBodyHandle and piece number";
-    let given = value
-        .repr()
-        .map_or_else(|_| "?".into(), |text| text.to_string());
-    Err(invalid_parameter(field, expected, given))
+    Err(invalid_parameter(field, expected, repr(value)))
 }
 
 /// Returns a piece as a tuple of handle and number, and a rigid body as its handle.

@@ -1,11 +1,11 @@
 //! Definitions of joints.
 
-use crate::convert::{Any, pickled, unpickled, vector};
+use crate::convert::{Any, pickled, unpickled, vector, vector_array};
 use crate::error::invalid_parameter;
-use crate::handle::AnyBody;
+use crate::handle::{AnyBody, RigidBodyHandle, SoftBodyHandle};
 use fuwafuwa::{Dim, Dim2, Dim3, Joint, JointAnchor, JointKind};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyDict};
 
 /// Returns an anchor: a point of the world, or a body with a point and, for a soft body, a radius.
 fn anchor<D: Dim>(field: &str, value: &Any<'_>) -> PyResult<JointAnchor<D>> {
@@ -40,6 +40,43 @@ pub fn kind_name(kind: JointKind) -> &'static str {
         JointKind::Spring { .. } => "spring",
         JointKind::Rope { .. } => "rope",
     }
+}
+
+/// Returns the kind of a joint and its parameters.
+fn parameters(py: Python<'_>, kind: JointKind) -> PyResult<Bound<'_, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("kind", kind_name(kind))?;
+    match kind {
+        JointKind::Pin => {}
+        JointKind::Spring {
+            stiffness,
+            damping,
+            length,
+        } => {
+            dict.set_item("stiffness", stiffness)?;
+            dict.set_item("damping", damping)?;
+            dict.set_item("length", length)?;
+        }
+        JointKind::Rope { length } => dict.set_item("length", length)?,
+    }
+    Ok(dict)
+}
+
+/// Returns an anchor in the form of the arguments of the constructors.
+fn anchor_object<D: Dim>(py: Python<'_>, anchor: JointAnchor<D>) -> PyResult<Any<'_>> {
+    Ok(match anchor {
+        JointAnchor::Point(point) => vector_array(py, point).into_any(),
+        JointAnchor::RigidBody { body, point } => (RigidBodyHandle(body), vector_array(py, point))
+            .into_pyobject(py)?
+            .into_any(),
+        JointAnchor::SoftBody {
+            body,
+            point,
+            radius,
+        } => (SoftBodyHandle(body), vector_array(py, point), radius)
+            .into_pyobject(py)?
+            .into_any(),
+    })
 }
 
 macro_rules! joint_class {
@@ -100,6 +137,20 @@ macro_rules! joint_class {
             #[getter]
             fn kind(&self) -> &'static str {
                 kind_name(self.0.kind)
+            }
+
+            /// Kind of the joint and its parameters, by name: length [m] of a rope; stiffness [N/m], damping [N s/m] and rest
+            /// length [m] of a spring.
+            #[getter]
+            fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+                parameters(py, self.0.kind)
+            }
+
+            /// First and second anchor, in the form of the arguments of the constructors.
+            #[getter]
+            fn anchors<'py>(&self, py: Python<'py>) -> PyResult<(Any<'py>, Any<'py>)> {
+                let [first, second] = self.0.anchors;
+                Ok((anchor_object(py, first)?, anchor_object(py, second)?))
             }
 
             /// Force above which the joint breaks [N].

@@ -67,5 +67,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(game::verify_replay, module)?)?;
     module.add_function(wrap_pyfunction!(material::library_names, module)?)?;
     module.add_function(wrap_pyfunction!(material::library_values, module)?)?;
+    // `setattr` keeps the private function out of `__all__`.
+    module.setattr("_gif", wrap_pyfunction!(picture::gif, module)?)?;
     Ok(())
 }

@@ -1,9 +1,9 @@
 //! Materials, and the library of published ones.
 
-use crate::convert::{Any, pickled, text, unpickled};
+use crate::convert::{Any, pickled, repr, text, unpickled};
 use crate::error::{OrInvalid, invalid, invalid_parameter};
 use fuwafuwa::library::{self, LibraryMaterial};
-use fuwafuwa::{PronyTerm, RateToughening, StrengthCriterion, StressLaw};
+use fuwafuwa::{Damping, PronyTerm, RateToughening, StrengthCriterion, StressLaw};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
@@ -68,40 +68,11 @@ impl Material {
         material.check().or_invalid()?;
         Ok(Self(material))
     }
-
-    /// Returns the value of a field.
-    fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Any<'py>> {
-        let material = &self.0;
-        let number = |number: f64| Ok(number.into_pyobject(py)?.into_any());
-        match name {
-            "young" => number(material.elasticity.young),
-            "poisson" => number(material.elasticity.poisson),
-            "stress_law" => self.stress_law(py),
-            "prony" => Ok(self.prony(py)?.into_any()),
-            "density" => number(material.density.into()),
-            "mass_damping" => number(material.damping.mass.into()),
-            "stiffness_damping" => number(material.damping.stiffness.into()),
-            "friction" => number(material.friction.into()),
-            "rolling_resistance" => number(material.rolling_resistance.into()),
-            "strength" => number(material.strength.into()),
-            "hydrostatic_strength" => Ok(self.hydrostatic_strength().into_pyobject(py)?),
-            "strength_scatter" => number(material.strength_scatter.into()),
-            "toughness" => number(material.toughness.into()),
-            "rate_toughening" => Ok(self.rate_toughening().into_pyobject(py)?),
-            "yield_strain" => number(material.yield_strain.into()),
-            _ => number(material.plastic_limit.into()),
-        }
-    }
 }
 
 /// Sets a field of a material.
 fn set_field(material: &mut fuwafuwa::Material, name: &str, value: &Any<'_>) -> PyResult<()> {
-    let wrong = |expected: &str| {
-        let given = value
-            .repr()
-            .map_or_else(|_| "?".into(), |text| text.to_string());
-        invalid_parameter(name, expected, given)
-    };
+    let wrong = |expected: &str| invalid_parameter(name, expected, repr(value));
     let number = || value.extract().map_err(|_: PyErr| wrong("a number"));
     let double = || value.extract().map_err(|_: PyErr| wrong("a number"));
     match name {
@@ -202,12 +173,33 @@ impl Material {
     }
 
     /// Returns all fields by name.
-    fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let fields = PyDict::new(py);
+    fn fields<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+        let fields = PyDict::new(slf.py());
         for name in FIELDS {
-            fields.set_item(name, self.field(py, name)?)?;
+            fields.set_item(name, slf.getattr(name)?)?;
         }
         Ok(fields)
+    }
+
+    /// Returns the material with the mass damping and the stiffness damping of a damping ratio.
+    ///
+    /// ratio: the ratio at the frequencies `low` and `high` [Hz]; it is lower between them and higher outside. Without
+    /// `high`, mass damping alone gives the ratio at `low`; at other frequencies, the ratio is inversely proportional to
+    /// the frequency.
+    #[pyo3(signature = (ratio, low, high=None))]
+    fn with_damping_ratio(&self, ratio: f32, low: f32, high: Option<f32>) -> PyResult<Self> {
+        let damping = match high {
+            None => Damping::at(ratio, low),
+            Some(high) => Damping::between(ratio, low, high),
+        };
+        let material = fuwafuwa::Material { damping, ..self.0 };
+        material.check().or_invalid()?;
+        Ok(Self(material))
+    }
+
+    /// Returns the damping ratio of a vibration with a frequency [Hz].
+    fn damping_ratio(&self, frequency: f32) -> f32 {
+        self.0.damping.ratio(frequency)
     }
 
     /// Young's modulus [Pa].
@@ -324,18 +316,24 @@ impl Material {
         self.0.fracture_energy()
     }
 
+    /// Shear modulus at small strain and at rest [Pa].
+    #[getter]
+    fn shear_modulus(&self) -> f64 {
+        self.0.elasticity.shear_modulus()
+    }
+
     /// Speed of a fast pressure wave [m/s].
     #[getter]
     fn wave_speed(&self) -> f64 {
         self.0.wave_speed()
     }
 
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
         let mut parts = Vec::new();
-        let usual = Self(fuwafuwa::Material::default());
+        let usual = Bound::new(slf.py(), Self(fuwafuwa::Material::default()))?;
         for name in FIELDS {
-            let value = self.field(py, name)?;
-            if !value.eq(usual.field(py, name)?)? {
+            let value = slf.getattr(name)?;
+            if !value.eq(usual.getattr(name)?)? {
                 parts.push(format!("{name}={}", value.repr()?));
             }
         }

@@ -1,10 +1,10 @@
-//! Queries: filters from keyword arguments, and results as dicts.
+//! Queries: selections from keyword arguments, and results as dicts.
 
 use crate::convert::{Any, named, vector_array};
-use crate::error::invalid_parameter;
+use crate::error::{FirstException, invalid_parameter};
 use crate::handle::{object, selector};
-use crate::rigid_body::layers;
-use fuwafuwa::{Dim, QueryFilter, QueryHit, QueryOverlap};
+use crate::rigid_body::LayerMasks;
+use fuwafuwa::{Dim, ObjectRef, QueryFilter, QueryHit, QueryOverlap};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -14,6 +14,9 @@ enum Kind {
     Soft,
     Rigid,
 }
+
+/// Names of the kinds of objects.
+const KINDS: [(&str, Kind); 2] = [("soft", Kind::Soft), ("rigid", Kind::Rigid)];
 
 /// Checks the largest distance of a query: the engine finds nothing within a distance that is not a number.
 pub fn check_distance(max_distance: f32) -> PyResult<()> {
@@ -27,40 +30,64 @@ pub fn check_distance(max_distance: f32) -> PyResult<()> {
     }
 }
 
-/// Returns a filter from the keyword arguments of a query.
-pub fn filter(
-    exclude: Option<&Any<'_>>,
-    only: Option<&str>,
-    layer_masks: Option<(u32, u32)>,
-    sensors: bool,
-) -> PyResult<QueryFilter<'static>> {
-    let mut filter = QueryFilter::default();
-    if let Some(exclude) = exclude {
-        if let Ok(one) = selector("exclude", exclude) {
-            filter = filter.excluding(one);
-        } else {
-            for one in exclude.try_iter()? {
-                filter = filter.excluding(selector("exclude", &one?)?);
+/// Keyword arguments by which a query selects objects.
+pub struct Selection<'a, 'py> {
+    /// Object that is left out, or several.
+    pub exclude: Option<&'a Any<'py>>,
+    /// Kind of the objects: "soft" or "rigid".
+    pub only: Option<&'a str>,
+    /// Layers that the objects must meet.
+    pub layers: Option<LayerMasks>,
+    /// Whether sensors count.
+    pub sensors: bool,
+    /// Function of Python that returns whether an object counts.
+    pub predicate: Option<&'a Any<'py>>,
+}
+
+impl Selection<'_, '_> {
+    /// Runs a query among the selected objects. An exception of the predicate is raised after the query.
+    pub fn run<R>(&self, query: impl FnOnce(QueryFilter<'_>) -> R) -> PyResult<R> {
+        let filter = self.filter()?;
+        let Some(predicate) = self.predicate else {
+            return Ok(query(filter));
+        };
+        let exception = FirstException::default();
+        let counts = |found: ObjectRef| {
+            exception.catch(false, || {
+                let found = object(predicate.py(), found)?;
+                predicate.call1((found,))?.is_truthy()
+            })
+        };
+        let result = query(filter.with_predicate(&counts));
+        exception.or(result)
+    }
+
+    /// Returns the filter without the predicate.
+    fn filter(&self) -> PyResult<QueryFilter<'static>> {
+        let mut filter = QueryFilter::default();
+        if let Some(exclude) = self.exclude {
+            if let Ok(one) = selector("exclude", exclude) {
+                filter = filter.excluding(one);
+            } else {
+                for one in exclude.try_iter()? {
+                    filter = filter.excluding(selector("exclude", &one?)?);
+                }
             }
         }
+        if let Some(only) = self.only {
+            filter = match named("only", only, &KINDS)? {
+                Kind::Soft => filter.only_soft(),
+                Kind::Rigid => filter.only_rigid(),
+            };
+        }
+        if let Some(LayerMasks(layers)) = self.layers {
+            filter = filter.layers(layers);
+        }
+        Ok(match self.sensors {
+            true => filter.including_sensors(),
+            false => filter,
+        })
     }
-    if let Some(only) = only {
-        filter = match named(
-            "only",
-            only,
-            &[("soft", Kind::Soft), ("rigid", Kind::Rigid)],
-        )? {
-            Kind::Soft => filter.only_soft(),
-            Kind::Rigid => filter.only_rigid(),
-        };
-    }
-    if let Some(masks) = layer_masks {
-        filter = filter.layers(layers(masks));
-    }
-    Ok(match sensors {
-        true => filter.including_sensors(),
-        false => filter,
-    })
 }
 
 /// Returns a hit as a dict.

@@ -1,9 +1,10 @@
 //! Definitions of rigid bodies.
 
 use crate::convert::{
-    Any, angular_object, pickled, rotation, rotation_object, unpickled, vector, vector_array,
+    Any, angular_object, pickled, repr, rotation, rotation_object, unpickled, vector, vector_array,
     velocity,
 };
+use crate::error::invalid_parameter;
 use crate::shape::{Shape2, Shape3};
 use fuwafuwa::{Dim, Dim2, Dim3, Layers, MotionType, RigidBody};
 use pyo3::prelude::*;
@@ -18,16 +19,28 @@ struct Properties<'a, 'py> {
     angular_velocity: Option<&'a Any<'py>>,
     friction: f32,
     restitution: f32,
-    layers: Option<(u32, u32)>,
+    layers: Option<LayerMasks>,
     is_sensor: bool,
     user_data: u64,
 }
 
-/// Returns layers from memberships and filters.
-pub fn layers((memberships, filters): (u32, u32)) -> Layers {
-    Layers {
-        memberships,
-        filters,
+/// Layers as an argument: a pair of bit masks.
+#[derive(Copy, Clone)]
+pub struct LayerMasks(pub Layers);
+
+impl<'py> FromPyObject<'_, 'py> for LayerMasks {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let masks: PyResult<(u32, u32)> = value.extract();
+        let (memberships, filters) = masks.map_err(|_| {
+            let expected = "a pair of bit masks of 32 bits: memberships and filters";
+            invalid_parameter("layers", expected, repr(&value))
+        })?;
+        Ok(Self(Layers {
+            memberships,
+            filters,
+        }))
     }
 }
 
@@ -46,7 +59,7 @@ fn with_properties<D: Dim>(
         velocity,
         friction: properties.friction,
         restitution: properties.restitution,
-        layers: properties.layers.map_or(body.layers, layers),
+        layers: properties.layers.map_or(body.layers, |masks| masks.0),
         is_sensor: properties.is_sensor,
         user_data: properties.user_data,
         ..body
@@ -111,7 +124,7 @@ macro_rules! rigid_body_class {
                 rotation: Option<&Any<'_>>,
                 friction: f32,
                 restitution: f32,
-                layers: Option<(u32, u32)>,
+                layers: Option<LayerMasks>,
                 is_sensor: bool,
                 user_data: u64,
             ) -> PyResult<Self> {
@@ -133,7 +146,7 @@ macro_rules! rigid_body_class {
                 rotation: Option<&Any<'_>>,
                 friction: f32,
                 restitution: f32,
-                layers: Option<(u32, u32)>,
+                layers: Option<LayerMasks>,
                 is_sensor: bool,
                 user_data: u64,
             ) -> PyResult<Self> {
@@ -162,7 +175,7 @@ macro_rules! rigid_body_class {
                 rotation: Option<&Any<'_>>,
                 friction: f32,
                 restitution: f32,
-                layers: Option<(u32, u32)>,
+                layers: Option<LayerMasks>,
                 is_sensor: bool,
                 user_data: u64,
             ) -> PyResult<Self> {
@@ -192,7 +205,7 @@ macro_rules! rigid_body_class {
                 rotation: Option<&Any<'_>>,
                 friction: f32,
                 restitution: f32,
-                layers: Option<(u32, u32)>,
+                layers: Option<LayerMasks>,
                 is_sensor: bool,
                 user_data: u64,
             ) -> PyResult<Self> {

@@ -1,14 +1,14 @@
 //! Views of rigid bodies in a world.
 
 use crate::convert::{
-    Any, angular_object, coordinates, rotation_object, rows, vector_array, vector_rows,
+    Any, angular_object, angular_rows, coordinates, rotation_object, vector_array, vector_rows,
 };
 use crate::error::OrInvalid;
 use crate::handle::RigidBodyHandle;
 use crate::rigid_body::{RigidBody2, RigidBody3, motion, motion_name};
 use crate::shape::{Shape2, Shape3};
 use crate::world::{World2, World3};
-use fuwafuwa::{Dim2, Dim3, DimAngular, RigidBodyRef};
+use fuwafuwa::{Dim2, Dim3, RigidBodyRef};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -154,21 +154,12 @@ macro_rules! rigid_view_class {
             fn reactions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
                 self.read(py, |body| {
                     let dict = PyDict::new(py);
-                    let torques = body.reactions().map(|reaction| reaction.torque.to_vec3());
+                    let torques = body.reactions().map(|reaction| reaction.torque);
                     let contacts = body.reactions().map(|reaction| reaction.contact);
                     let couplings = body.reactions().map(|reaction| reaction.coupling);
                     dict.set_item("contact", vector_rows(py, contacts))?;
                     dict.set_item("coupling", vector_rows(py, couplings))?;
-                    match $dims {
-                        "2" => {
-                            let torques: Vec<f32> = torques.map(|torque| torque.z).collect();
-                            dict.set_item("torque", numpy::PyArray1::from_vec(py, torques))?;
-                        }
-                        _ => {
-                            let torques = torques.flat_map(|torque| torque.to_array()).collect();
-                            dict.set_item("torque", rows(py, 3, torques))?;
-                        }
-                    }
+                    dict.set_item("torque", angular_rows::<$dim>(py, torques))?;
                     Ok(dict)
                 })
             }

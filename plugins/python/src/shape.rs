@@ -99,7 +99,7 @@ macro_rules! shape_class {
 
         #[pymethods]
         impl $class {
-            /// Returns a ball; in 2D a disc.
+            /// Returns a ball (in 2D a disc) with a radius [m] and a centre [m], by default the origin.
             #[staticmethod]
             #[pyo3(signature = (radius, centre=None))]
             fn ball(radius: f32, centre: Option<&Any<'_>>) -> PyResult<Self> {
@@ -107,7 +107,7 @@ macro_rules! shape_class {
                 Self::checked(Shape::Ball { centre, radius })
             }
 
-            /// Returns a box from half of its extents, its centre and its rotation.
+            /// Returns a box from half of its extents [m], its centre [m], by default the origin, and its rotation.
             #[staticmethod]
             #[pyo3(name = "box", signature = (half, centre=None, rotation=None))]
             fn cuboid(
@@ -126,14 +126,14 @@ macro_rules! shape_class {
                 }
             }
 
-            /// Returns a capsule: all points within `radius` of the segment between two points.
+            /// Returns a capsule: all points within `radius` [m] of the segment between two points [m].
             #[staticmethod]
             fn capsule(start: &Any<'_>, end: &Any<'_>, radius: f32) -> PyResult<Self> {
                 let (from, to) = (vector::<$dim>("start", start)?, vector::<$dim>("end", end)?);
                 Self::checked(Shape::capsule(from, to, radius))
             }
 
-            /// Returns the half-space on the far side of a plane through `point` (default the origin). The normal points
+            /// Returns the half-space on the far side of a plane through `point` [m], by default the origin. The normal points
             /// out of the solid side; its length has no effect. A floor is `half_space((0, 1))` in 2D.
             #[staticmethod]
             #[pyo3(signature = (normal, point=None))]

@@ -1,16 +1,18 @@
 //! Soft bodies outside of a world, and views of soft bodies in a world.
 
 use crate::body_arrays::{self as arrays, FacetArrays};
-use crate::convert::{Any, coordinates, name_of, named, rotation, vector, vector_array, velocity};
+use crate::convert::{
+    Any, coordinates, name_of, named, repr, rotation, vector, vector_array, velocity,
+};
 use crate::error::{OrInvalid, invalid, invalid_parameter};
 use crate::grid::{VoxelGrid2, VoxelGrid3, from_array, from_shape};
 use crate::handle::SoftBodyHandle;
 use crate::material::Material;
-use crate::rigid_body::layers;
 use crate::shape::{Shape2, Shape3};
 use crate::world::{World2, World3};
 use fuwafuwa::{
-    Dim, Dim2, Dim3, DimVector, Grading, Law, SoftBody, VoxelGrid, World, WorldConfig, snapshot,
+    Dim, Dim2, Dim3, DimVector, Grading, Law, Layers, SoftBody, VoxelGrid, World, WorldConfig,
+    snapshot,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
@@ -37,14 +39,8 @@ fn materials(value: Option<&Any<'_>>) -> PyResult<Vec<fuwafuwa::Material>> {
         return Ok(vec![one.0]);
     }
     let several: Vec<Material> = value.extract().map_err(|_: PyErr| {
-        let given = value
-            .repr()
-            .map_or_else(|_| "?".into(), |text| text.to_string());
-        invalid_parameter(
-            "materials",
-            "a Material, or a list of them for numbers 1, 2, …",
-            given,
-        )
+        let expected = "a Material, or a list of them for numbers 1, 2, …";
+        invalid_parameter("materials", expected, repr(value))
     })?;
     Ok(several.into_iter().map(|material| material.0).collect())
 }
@@ -140,7 +136,7 @@ macro_rules! soft_body_class {
                 built(py, from_array::<$dim>(array, voxel_size)?, materials, law, grading).map(Self)
             }
 
-            /// Returns a body of voxels that covers a bounded shape, at the position of the shape.
+            /// Returns a body of voxels that covers a bounded shape, at the position of the shape. voxel_size [m].
             #[staticmethod]
             #[pyo3(signature = (shape, voxel_size, materials=None, *, law="corotational_vem", grading="graded"))]
             fn from_shape(
@@ -156,7 +152,7 @@ macro_rules! soft_body_class {
                 Ok(Self(body.translated(origin)))
             }
 
-            /// Returns a ball (in 2D a disc), `n` voxels across. Its low corner is at the origin.
+            /// Returns a ball (in 2D a disc) with a diameter [m], `n` voxels across. Its low corner is at the origin.
             #[staticmethod]
             #[pyo3(signature = (n, diameter=1.0, materials=None, *, law="corotational_vem", grading="graded"))]
             fn ball(
@@ -171,7 +167,7 @@ macro_rules! soft_body_class {
                 built(py, grid, materials, law, grading).map(Self)
             }
 
-            /// Returns a cube (in 2D a square), `n` voxels wide. Its low corner is at the origin.
+            /// Returns a cube (in 2D a square) with a width [m], `n` voxels wide. Its low corner is at the origin.
             #[staticmethod]
             #[pyo3(signature = (n, width=1.0, materials=None, *, law="corotational_vem", grading="graded"))]
             fn cube(
@@ -217,7 +213,8 @@ macro_rules! soft_body_class {
 
             /// Returns a copy with other layers: bit masks of memberships and filters.
             fn with_layers(&self, memberships: u32, filters: u32) -> Self {
-                Self(self.0.clone().with_layers(layers((memberships, filters))))
+                let layers = Layers { memberships, filters };
+                Self(self.0.clone().with_layers(layers))
             }
 
             /// Returns a copy with another number of the program.
@@ -418,6 +415,38 @@ macro_rules! body_methods {
                 Self::read(slf, |body| Ok(body.user_data()))
             }
 
+            /// Factor by which gravity is multiplied for this body, see `set_gravity_scale` of the world.
+            #[getter]
+            fn gravity_scale(slf: &Bound<'_, Self>) -> PyResult<f32> {
+                Self::read(slf, |body| Ok(body.gravity_scale()))
+            }
+
+            /// Factor s by which the inertia of deformation was raised to keep the substep stable, 1 = unchanged: vibrations
+            /// are √s times slower. It acts with the setting stiff_bodies="mass_scaled".
+            #[getter]
+            fn mass_scale(slf: &Bound<'_, Self>) -> PyResult<f64> {
+                Self::read(slf, |body| Ok(body.mass_scale()))
+            }
+
+            /// Factor by which Young's modulus was lowered to keep the substep stable, 1 = unchanged. It acts with the
+            /// setting stiff_bodies="softened".
+            #[getter]
+            fn stiffness_scale(slf: &Bound<'_, Self>) -> PyResult<f64> {
+                Self::read(slf, |body| Ok(body.stiffness_scale()))
+            }
+
+            /// Number of awake elements that are turned inside out.
+            #[getter]
+            fn inverted_count(slf: &Bound<'_, Self>) -> PyResult<u32> {
+                Self::read(slf, |body| Ok(body.inverted_count()))
+            }
+
+            /// Largest absolute coordinate at which the body may be added to a world or moved by hand [m]: 8192 voxels.
+            #[getter]
+            fn range(slf: &Bound<'_, Self>) -> PyResult<f32> {
+                Self::read(slf, |body| Ok(body.range()))
+            }
+
             /// Ids of the nodes: uint32 array (n,), ascending. Ids are reused after a node is removed.
             #[getter]
             fn node_ids<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
@@ -440,6 +469,15 @@ macro_rules! body_methods {
                     arrays::vectors_of_nodes(slf.py(), body, |id| body.node_state(id).1)
                 };
                 Self::read(slf, |body| Ok(velocity(body)))
+            }
+
+            /// Elastic forces on the nodes in the last substep in which the body was awake [N]: float32 array (n, d), a copy.
+            #[getter]
+            fn forces<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
+                let force = |body: &SoftBody<$dim>| {
+                    arrays::vectors_of_nodes(slf.py(), body, |id| body.force_on(id))
+                };
+                Self::read(slf, |body| Ok(force(body)))
             }
 
             /// Masses of the nodes [kg]: float32 array (n,), a copy.
@@ -466,8 +504,9 @@ macro_rules! body_methods {
                 Self::read(slf, |body| Ok(position(body)))
             }
 
-            /// Damage of the nodes: float32 array (n,), a copy. 0 is intact. A node splits at 1, but a split nearby makes it
-            /// wait, and its damage may then exceed 1.
+            /// Damage of the nodes: float32 array (n,), a copy. 0 is intact. A node splits as soon as its damage is 1 or more,
+            /// unless a node nearby has just split: then it waits for some milliseconds. Damage grows in steps of up to 6.25,
+            /// so that waiting nodes have a damage above 1, seldom above 20. Nodes that are no longer overloaded heal.
             #[getter]
             fn damage<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 Self::read(slf, |body| {
@@ -497,7 +536,7 @@ macro_rules! body_methods {
             #[getter]
             fn element_ids<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 Self::read(slf, |body| {
-                    Ok(arrays::of_elements(slf.py(), body, |view| view.id.0))
+                    Ok(arrays::of_elements(slf.py(), body, |id, _| id.0))
                 })
             }
 
@@ -515,7 +554,9 @@ macro_rules! body_methods {
             #[getter]
             fn levels<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 Self::read(slf, |body| {
-                    Ok(arrays::of_elements(slf.py(), body, |view| view.level))
+                    Ok(arrays::of_elements(slf.py(), body, |_, element| {
+                        element.cell.level
+                    }))
                 })
             }
 
@@ -523,7 +564,9 @@ macro_rules! body_methods {
             #[getter]
             fn element_materials<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 Self::read(slf, |body| {
-                    Ok(arrays::of_elements(slf.py(), body, |view| view.material))
+                    Ok(arrays::of_elements(slf.py(), body, |_, element| {
+                        body.grid().material(body.mesh().first_voxel(element))
+                    }))
                 })
             }
 
@@ -531,7 +574,9 @@ macro_rules! body_methods {
             #[getter]
             fn element_pieces<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 Self::read(slf, |body| {
-                    Ok(arrays::of_elements(slf.py(), body, |view| view.piece.0))
+                    Ok(arrays::of_elements(slf.py(), body, |id, _| {
+                        body.pieces().of_element(id).0
+                    }))
                 })
             }
 
@@ -539,7 +584,9 @@ macro_rules! body_methods {
             #[getter]
             fn strain<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 Self::read(slf, |body| {
-                    Ok(arrays::of_elements(slf.py(), body, |view| view.strain))
+                    Ok(arrays::of_elements(slf.py(), body, |id, _| {
+                        body.strain(id).unwrap_or(0.0)
+                    }))
                 })
             }
 
@@ -547,11 +594,21 @@ macro_rules! body_methods {
             #[getter]
             fn plastic_strain<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 let strain = |body: &SoftBody<$dim>| {
-                    arrays::of_elements(slf.py(), body, |view| {
-                        body.plastic_strain(view.id).unwrap_or(0.0)
+                    arrays::of_elements(slf.py(), body, |id, _| {
+                        body.plastic_strain(id).unwrap_or(0.0)
                     })
                 };
                 Self::read(slf, |body| Ok(strain(body)))
+            }
+
+            /// Elastic Biot strain of the elements along the axes of the undeformed body, the symmetric part of RᵀF - 1: float64
+            /// array (m, d, d). 0.1 is a stretch by a tenth. F is without the plastic part, and R is its rotation.
+            #[getter]
+            fn biot_strain<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
+                Self::read(slf, |body| {
+                    let rows = |state: &fuwafuwa::ElementState| state.strain.map(Into::into);
+                    Ok(arrays::matrices(slf.py(), body, rows))
+                })
             }
 
             /// Deformation gradients F of the elements: float64 array (m, d, d).
@@ -576,9 +633,8 @@ macro_rules! body_methods {
             #[getter]
             fn elastic_energy<'py>(slf: &Bound<'py, Self>) -> PyResult<Any<'py>> {
                 Self::read(slf, |body| {
-                    Ok(arrays::of_elements(slf.py(), body, |view| {
-                        body.element_state(view.id)
-                            .map_or(0.0, |state| state.energy)
+                    Ok(arrays::of_elements(slf.py(), body, |id, _| {
+                        body.element_state(id).map_or(0.0, |state| state.energy)
                     }))
                 })
             }
@@ -624,7 +680,17 @@ macro_rules! body_methods {
                 Self::read(slf, |body| Ok(body.mass_inside(&region.0)))
             }
 
-            /// Fixes nodes at their positions. nodes: a bool array (n,), or rows.
+            /// Returns sums over the part of the body inside a shape or on its surface: a dict with nodes, their number; mass
+            /// [kg]; centre of mass [m]; momentum [kg m/s]; elastic_force [N], the force of the rest of the body on this part
+            /// in the last substep; elastic_energy [J] of the elements whose centre is inside (in 2D for 1 m of depth).
+            fn sums_inside<'py>(
+                slf: &Bound<'py, Self>,
+                region: $shape,
+            ) -> PyResult<Bound<'py, PyDict>> {
+                Self::read(slf, |body| arrays::sums(slf.py(), body, &region.0))
+            }
+
+            /// Fixes nodes at their positions. nodes: n bools, or rows.
             fn fix_nodes(slf: &Bound<'_, Self>, nodes: &Any<'_>) -> PyResult<()> {
                 let nodes = Self::read(slf, |body| arrays::chosen_nodes(body, nodes))?;
                 Self::write(slf, |body| {
@@ -633,7 +699,7 @@ macro_rules! body_methods {
                 })
             }
 
-            /// Frees fixed nodes. nodes: a bool array (n,), or rows.
+            /// Frees fixed nodes. nodes: n bools, or rows.
             fn free_nodes(slf: &Bound<'_, Self>, nodes: &Any<'_>) -> PyResult<()> {
                 let nodes = Self::read(slf, |body| arrays::chosen_nodes(body, nodes))?;
                 Self::write(slf, |body| {
@@ -642,7 +708,8 @@ macro_rules! body_methods {
                 })
             }
 
-            /// Sets the positions [m] and velocities [m/s] of all nodes from arrays (n, d) of float32 or float64.
+            /// Sets the positions [m] and velocities [m/s] of all nodes from arrays (n, d) of float32 or float64. Positions must
+            /// be within `range`.
             #[pyo3(signature = (positions=None, velocities=None))]
             fn set_node_states(
                 slf: &Bound<'_, Self>,

@@ -1,26 +1,28 @@
 //! Worlds: the program of a simulation.
 
 use crate::convert::{
-    Any, angular_object, coordinates, name_of, named, rotation, vector, vector_array, velocity,
+    Any, angular_object, name_of, named, rotation, vector, vector_array, vector_pair, velocity,
 };
-use crate::error::{OrInvalid, invalid_parameter};
+use crate::error::{OrInvalid, file_error, invalid_parameter};
 use crate::event::{StepReport, contact_dict, event_dict};
 use crate::handle::{
     AnyBody, AnyHandle, GripHandle, JointHandle, KnifeHandle, RigidBodyHandle, SoftBodyHandle,
     selector,
 };
 use crate::joint::{Joint2, Joint3};
-use crate::picture::{plane, space, view_of};
-use crate::query;
-use crate::rigid_body::{RigidBody2, RigidBody3, layers};
+use crate::picture::{PictureOptions, rgb, view_of};
+use crate::query::{self, Selection};
+use crate::rigid_body::{LayerMasks, RigidBody2, RigidBody3};
 use crate::rigid_view::{RigidBodyView2, RigidBodyView3};
 use crate::scene::Scene;
 use crate::shape::{Shape2, Shape3};
 use crate::soft_body::{SoftBody2, SoftBody3, SoftBodyView2, SoftBodyView3};
 use fuwafuwa::{
-    Blade, BodyHandle, Dim, Dim2, Dim3, Event, Grip, GripDrive, Impulse, Knife, MotionType,
+    Blade, BodyHandle, Dim, Dim2, Dim3, Event, Grip, GripDrive, Impulse, Knife, Layers, MotionType,
     PieceId, PieceSize, Ray, ReactionForce, Removed, StiffBodies, World, WorldConfig, snapshot,
 };
+use fuwafuwa_painter::png_of;
+use numpy::IntoPyArray;
 use pyo3::exceptions::{PyKeyError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
@@ -151,7 +153,7 @@ fn piece_size(
 macro_rules! world_class {
     (
         $class:ident, $soft:ident, $soft_view:ident, $rigid:ident, $rigid_view:ident, $joint:ident, $shape:ident,
-        $dim:ty, $dims:literal, $picture:ident, $down:literal
+        $dim:ty, $dims:literal, $down:literal
     ) => {
         #[doc = concat!("World in ", $dims, "D: soft bodies, rigid bodies, joints, knives and grips. `step` advances its time.")]
         ///
@@ -355,12 +357,12 @@ macro_rules! world_class {
             fn add_knife(
                 &mut self,
                 holder: RigidBodyHandle,
-                edge: (Any<'_>, Any<'_>),
+                edge: &Any<'_>,
                 toward: &Any<'_>,
                 radius: f32,
                 height: f32,
             ) -> PyResult<KnifeHandle> {
-                let edge = [vector::<$dim>("edge", &edge.0)?, vector::<$dim>("edge", &edge.1)?];
+                let edge = vector_pair::<$dim>("edge", "a pair of points", edge)?;
                 let toward = vector::<$dim>("toward", toward)?;
                 let knife = Knife { radius, height, ..Knife::new(holder.0, edge, toward) };
                 self.world.add_knife(knife).or_invalid().map(KnifeHandle)
@@ -410,6 +412,39 @@ macro_rules! world_class {
             /// Returns the number of nodes in a grip.
             fn grip_node_count(&self, grip: GripHandle) -> PyResult<usize> {
                 Ok(self.world.grip(grip.0).or_invalid()?.node_count())
+            }
+
+            /// Returns the definition of a joint as it was added.
+            fn joint(&self, joint: JointHandle) -> PyResult<$joint> {
+                Ok($joint(self.world.joint(joint.0).or_invalid()?.definition()))
+            }
+
+            /// Returns the force of a joint on its first anchor in the last substep [N]: float32 array (d,). The force on the
+            /// second anchor is opposite.
+            fn joint_reaction<'py>(&self, py: Python<'py>, joint: JointHandle) -> PyResult<Any<'py>> {
+                let force = self.world.joint(joint.0).or_invalid()?.reaction();
+                Ok(vector_array(py, force).into_any())
+            }
+
+            /// Returns the force of the cut material on a knife in the last substep: a dict with point, the position of the
+            /// holder [m], force [N] and torque about the point [N m].
+            fn knife_reaction<'py>(
+                &self,
+                py: Python<'py>,
+                knife: KnifeHandle,
+            ) -> PyResult<Bound<'py, PyDict>> {
+                let knife = self.world.knife(knife.0).or_invalid()?;
+                let holder = self.world.rigid_body(knife.definition().holder).or_invalid()?;
+                let (point, force, torque) = (holder.position(), knife.force(), knife.torque());
+                reaction_dict::<$dim>(py, ReactionForce { point, force, torque })
+            }
+
+            /// Returns the damping that acts in a soft body: a list of pairs of mass damping [1/s] and stiffness damping [s],
+            /// one for each material. The substep limits stiffness damping; more substeps, larger voxels or a softer
+            /// material raise the limit. In a body with a mass scale, mass damping is lower and stiffness damping higher.
+            fn acting_damping(&self, body: SoftBodyHandle) -> PyResult<Vec<(f32, f32)>> {
+                let dampings = self.world.acting_damping(body.0).or_invalid()?;
+                Ok(dampings.iter().map(|damping| (damping.mass, damping.stiffness)).collect())
             }
 
             /// Returns the positions of both anchors of a joint [m]; None if an attached body was removed.
@@ -699,7 +734,7 @@ macro_rules! world_class {
                 memberships: u32,
                 filters: u32,
             ) -> PyResult<()> {
-                let layers = layers((memberships, filters));
+                let layers = Layers { memberships, filters };
                 self.world.set_layers(BodyHandle::from(body), layers).or_invalid()
             }
 
@@ -764,12 +799,15 @@ macro_rules! world_class {
             /// material, point [m], normal and distance [m].
             ///
             /// The queries have the same filters. exclude: a body, a piece, or a list of them; only: "soft" or "rigid";
-            /// layers: bit masks of memberships and filters; sensors: whether sensors count.
+            /// layers: bit masks of memberships and filters, which the layers of an object must meet; sensors: whether
+            /// sensors count; predicate: function that gets an object (a handle of a rigid body, or a tuple of a handle of
+            /// a soft body and a piece number) and returns whether it counts. It may read the world, and it may be called
+            /// several times for an object.
             #[pyo3(
                 signature = (origin, direction, max_distance=f32::INFINITY, *, exclude=None, only=None, layers=None,
-                    sensors=false),
+                    sensors=false, predicate=None),
                 text_signature = "($self, origin, direction, max_distance=1e999, *, exclude=None, only=None, layers=None, \
-                    sensors=False)"
+                    sensors=False, predicate=None)"
             )]
             #[allow(clippy::too_many_arguments)] // keyword arguments of Python
             fn ray_cast<'py>(
@@ -780,22 +818,25 @@ macro_rules! world_class {
                 max_distance: f32,
                 exclude: Option<&Any<'_>>,
                 only: Option<&str>,
-                layers: Option<(u32, u32)>,
+                layers: Option<LayerMasks>,
                 sensors: bool,
+                predicate: Option<&Any<'_>>,
             ) -> PyResult<Option<Bound<'py, PyDict>>> {
                 let origin = vector::<$dim>("origin", origin)?;
                 let ray = Ray::new(origin, vector::<$dim>("direction", direction)?);
                 query::check_distance(max_distance)?;
-                let filter = query::filter(exclude, only, layers, sensors)?;
-                let hit = self.world.ray_cast(ray, max_distance, filter);
+                let selection = Selection { exclude, only, layers, sensors, predicate };
+                let hit = selection.run(|filter| self.world.ray_cast(ray, max_distance, filter))?;
                 hit.map(|hit| query::hit(py, &hit)).transpose()
             }
 
             /// Returns the point of a surface that is closest to a point, within `max_distance` [m], or None: a dict with
             /// object, element (id), material, point [m], normal and distance [m]. The filters are those of `ray_cast`.
             #[pyo3(
-                signature = (point, max_distance=f32::INFINITY, *, exclude=None, only=None, layers=None, sensors=false),
-                text_signature = "($self, point, max_distance=1e999, *, exclude=None, only=None, layers=None, sensors=False)"
+                signature = (point, max_distance=f32::INFINITY, *, exclude=None, only=None, layers=None, sensors=false,
+                    predicate=None),
+                text_signature = "($self, point, max_distance=1e999, *, exclude=None, only=None, layers=None, \
+                    sensors=False, predicate=None)"
             )]
             #[allow(clippy::too_many_arguments)] // keyword arguments of Python
             fn closest_point<'py>(
@@ -805,47 +846,54 @@ macro_rules! world_class {
                 max_distance: f32,
                 exclude: Option<&Any<'_>>,
                 only: Option<&str>,
-                layers: Option<(u32, u32)>,
+                layers: Option<LayerMasks>,
                 sensors: bool,
+                predicate: Option<&Any<'_>>,
             ) -> PyResult<Option<Bound<'py, PyDict>>> {
                 let point = vector::<$dim>("point", point)?;
                 query::check_distance(max_distance)?;
-                let filter = query::filter(exclude, only, layers, sensors)?;
-                let hit = self.world.closest_point(point, max_distance, filter);
+                let selection = Selection { exclude, only, layers, sensors, predicate };
+                let hit = selection.run(|filter| self.world.closest_point(point, max_distance, filter))?;
                 hit.map(|hit| query::hit(py, &hit)).transpose()
             }
 
             /// Returns the objects that contain a point: a list of dicts with object, element (id) and material. The filters
             /// are those of `ray_cast`.
-            #[pyo3(signature = (point, *, exclude=None, only=None, layers=None, sensors=false))]
+            #[pyo3(signature = (point, *, exclude=None, only=None, layers=None, sensors=false, predicate=None))]
+            #[allow(clippy::too_many_arguments)] // keyword arguments of Python
             fn objects_at<'py>(
                 &self,
                 py: Python<'py>,
                 point: &Any<'_>,
                 exclude: Option<&Any<'_>>,
                 only: Option<&str>,
-                layers: Option<(u32, u32)>,
+                layers: Option<LayerMasks>,
                 sensors: bool,
+                predicate: Option<&Any<'_>>,
             ) -> PyResult<Bound<'py, PyList>> {
                 let point = vector::<$dim>("point", point)?;
-                let filter = query::filter(exclude, only, layers, sensors)?;
-                query::overlaps(py, &self.world.objects_at(point, filter))
+                let selection = Selection { exclude, only, layers, sensors, predicate };
+                let found = selection.run(|filter| self.world.objects_at(point, filter))?;
+                query::overlaps(py, &found)
             }
 
             /// Returns the objects that overlap a shape: a list of dicts with object, element (id) and material. The filters
             /// are those of `ray_cast`.
-            #[pyo3(signature = (shape, *, exclude=None, only=None, layers=None, sensors=false))]
+            #[pyo3(signature = (shape, *, exclude=None, only=None, layers=None, sensors=false, predicate=None))]
+            #[allow(clippy::too_many_arguments)] // keyword arguments of Python
             fn overlaps<'py>(
                 &self,
                 py: Python<'py>,
                 shape: $shape,
                 exclude: Option<&Any<'_>>,
                 only: Option<&str>,
-                layers: Option<(u32, u32)>,
+                layers: Option<LayerMasks>,
                 sensors: bool,
+                predicate: Option<&Any<'_>>,
             ) -> PyResult<Bound<'py, PyList>> {
-                let filter = query::filter(exclude, only, layers, sensors)?;
-                query::overlaps(py, &self.world.overlaps(&shape.0, filter).or_invalid()?)
+                let selection = Selection { exclude, only, layers, sensors, predicate };
+                let found = selection.run(|filter| self.world.overlaps(&shape.0, filter))?;
+                query::overlaps(py, &found.or_invalid()?)
             }
 
             /// Returns the state as bytes, for `restore`.
@@ -886,36 +934,44 @@ macro_rules! world_class {
                 Scene::of_world(&self.world)
             }
 
-            /// Returns a picture as a PNG file, painted without a GPU.
+            /// Low and high corner of the region that a picture shows by default [m]: that of all bodies, with a margin.
+            #[getter]
+            fn view<'py>(&self, py: Python<'py>) -> (Any<'py>, Any<'py>) {
+                let [low, high] = view_of(&self.world);
+                (vector_array(py, low).into_any(), vector_array(py, high).into_any())
+            }
+
+            /// Returns a picture as an array: uint8 (height, width, 3), red, green and blue, the top row first.
             ///
             /// view: low and high corner of the visible region [m], by default that of all bodies; width [pixels], 16 to
-            /// 4096; elements: whether the elements are shown instead of the surface.
+            /// 4096; elements: whether the elements are shown instead of the surface. The height follows from the view
+            /// in 2D; in 3D, the picture is a square. Painted without a GPU.
+            #[pyo3(signature = (*, view=None, width=480, elements=false))]
+            fn rgb<'py>(
+                &self,
+                py: Python<'py>,
+                view: Option<&Any<'_>>,
+                width: u32,
+                elements: bool,
+            ) -> PyResult<Any<'py>> {
+                let options = PictureOptions::<$dim>::new(view, width, elements)?;
+                let world = &self.world;
+                let pixels = py.detach(|| options.paint(world).map(|image| rgb(&image)));
+                Ok(pixels.or_invalid()?.into_pyarray(py).into_any())
+            }
+
+            /// Returns a picture as a PNG file. The keywords are those of `rgb`.
             #[pyo3(signature = (*, view=None, width=480, elements=false))]
             fn png<'py>(
                 &self,
                 py: Python<'py>,
-                view: Option<(Any<'_>, Any<'_>)>,
+                view: Option<&Any<'_>>,
                 width: u32,
                 elements: bool,
             ) -> PyResult<Bound<'py, PyBytes>> {
-                if !(16..=4096).contains(&width) {
-                    let expected = "16 to 4096 pixels";
-                    return Err(invalid_parameter("width", expected, width.to_string()));
-                }
-                let view = match view {
-                    None => view_of(&self.world),
-                    Some((low, high)) => {
-                        let (low, high) = (vector::<$dim>("view", &low)?, vector::<$dim>("view", &high)?);
-                        if (0..<$dim as Dim>::N).any(|axis| low[axis] >= high[axis]) {
-                            let expected = "a low and a high corner";
-                            let given = format!("{:?} and {:?}", coordinates(low), coordinates(high));
-                            return Err(invalid_parameter("view", expected, given));
-                        }
-                        [low, high]
-                    }
-                };
+                let options = PictureOptions::<$dim>::new(view, width, elements)?;
                 let world = &self.world;
-                let png = py.detach(|| $picture(world, view, width, elements)).or_invalid()?;
+                let png = py.detach(|| png_of(&options.paint(world)?)).or_invalid()?;
                 Ok(PyBytes::new(py, &png))
             }
 
@@ -923,19 +979,19 @@ macro_rules! world_class {
                 self.png(py, None, 480, false)
             }
 
-            /// Writes a picture into a PNG file; the keywords are those of `png`.
+            /// Writes a picture into a PNG file. The keywords are those of `rgb`.
             #[pyo3(signature = (path, *, view=None, width=480, elements=false))]
             fn save_png(
                 &self,
                 py: Python<'_>,
                 path: PathBuf,
-                view: Option<(Any<'_>, Any<'_>)>,
+                view: Option<&Any<'_>>,
                 width: u32,
                 elements: bool,
             ) -> PyResult<()> {
                 let png = self.png(py, view, width, elements)?;
                 let written = std::fs::write(&path, png.as_bytes());
-                written.map_err(|error| crate::error::unreadable(&path, &error))
+                written.map_err(|error| file_error(&path, &error))
             }
 
             /// Draws the world with matplotlib and returns the axes.
@@ -978,7 +1034,6 @@ world_class!(
     Shape2,
     Dim2,
     "2",
-    plane,
     "(0, -9.81)"
 );
 world_class!(
@@ -991,7 +1046,6 @@ world_class!(
     Shape3,
     Dim3,
     "3",
-    space,
     "(0, -9.81, 0)"
 );
 

@@ -103,8 +103,87 @@ def test_arrays_of_wrong_shape_or_type_are_rejected(fwd):
         body.fix_nodes([0, n])
     with rejected("nodes must be"):
         body.fix_nodes([-1])
+    misaligned = np.frombuffer(b"\0" + kept.tobytes(), np.uint8)[1:].view(np.float32).reshape(kept.shape)
+    if not misaligned.flags.aligned:
+        with rejected("misaligned in memory"):
+            body.set_node_states(positions=misaligned)
+    with rejected("positions must be within 1024.0 m of the origin on each axis, given 1e30 at node 0"):
+        body.set_node_states(positions=np.full_like(kept, 1e30))
     assert not body.fixed.any()
     np.testing.assert_array_equal(body.positions, kept)
+
+
+def test_lists_of_bools_are_masks(fwd):
+    body = fwd.SoftBody.ball(4)
+    mask = [False] * body.node_count
+    mask[3] = True
+    body.fix_nodes(mask)
+    assert np.flatnonzero(body.fixed).tolist() == [3]
+    with rejected("nodes must be"):
+        body.fix_nodes([True, False])
+    body.free_nodes(np.array(mask))
+    body.fix_nodes([])
+    assert not body.fixed.any()
+
+
+def test_huge_sizes_are_rejected_without_memory(fwd):
+    most = "size must be at most 1024 voxels on an axis and 67108864 in all, given"
+    for extent in (1025, 2**20):
+        for value in (np.uint8(1), np.bool_(True)):
+            with rejected(most):
+                fwd.VoxelGrid(np.broadcast_to(value, (extent,) * fwd.dim), 0.1)
+    with rejected(most):
+        fw.VoxelGrid3(np.broadcast_to(np.uint8(1), (1024, 1024, 1024)), 0.1)
+    with rejected(most):
+        fwd.SoftBody.ball(10**9)
+    with rejected(most):
+        fwd.SoftBody.from_shape(fwd.Shape.ball(1.0), 1e-6)
+    with rejected(most):
+        fwd.VoxelGrid.from_distance((2**63,) * fwd.dim, 0.1, lambda point: -1.0)
+    for size in (0.0, -1.0, float("inf"), NAN):
+        with rejected("voxel_size must be 0.000001 to 1000 m, given"):
+            fwd.SoftBody.from_shape(fwd.Shape.ball(1.0), size)
+
+
+def test_pairs_name_the_argument(fwd):
+    world, _, hand = torn_world(fwd)
+    point = vector(fwd.dim, 0, 0)
+    for layers in ((1, 2, 3), (1,), 7, (-1, 0), (2**32, 0), "ab"):
+        with rejected("layers must be a pair of bit masks of 32 bits: memberships and filters, given"):
+            world.objects_at(point, layers=layers)
+        with rejected("layers must be a pair"):
+            fwd.RigidBody.fixed(fwd.Shape.ball(1.0), layers=layers)
+    for view in ((), (point,), (point, point, point), 1):
+        with rejected("view must be a low and a high corner, given"):
+            world.rgb(view=view)
+    for edge in ((), (point, point, point), None):
+        with rejected("edge must be a pair of points, given"):
+            world.add_knife(hand, edge, point)
+
+
+def test_long_values_are_shortened_in_errors(fwd):
+    with pytest.raises(fw.Error) as caught:
+        fwd.Shape.ball(1.0, ["x" * 10**6])
+    assert len(str(caught.value)) < 400 and "…" in str(caught.value)
+
+
+def test_damaged_pickles_are_rejected(fwd):
+    import pickle
+
+    values = [
+        fw.Material(),
+        fwd.Shape.ball(1.0),
+        fwd.RigidBody.fixed(fwd.Shape.ball(1.0)),
+        fwd.Joint.pin((0,) * fwd.dim, (1,) * fwd.dim),
+    ]
+    values += [fwd.SoftBody.ball(4), fwd.World()]
+    values.append(values[-1].add_soft_body(values[-2]))
+    for value in values:
+        decode, (state,) = value.__reduce__()
+        for damaged in (b"", state[: len(state) // 2], b"\xff" * len(state)):
+            with pytest.raises(fw.Error):
+                decode(damaged)
+        assert type(pickle.loads(pickle.dumps(value))) is type(value)
 
 
 def test_parameters_out_of_range_name_the_field(fwd):

@@ -263,3 +263,129 @@ def test_library_has_sources():
     assert material.density == 900 and material.replace(density=1.0).young == material.young
     assert fw.Material(**material.fields()) == material
     assert eval(repr(fw.Material(young=9e3)), {"Material": fw.Material}) == fw.Material(young=9e3)
+
+
+def test_predicate_selects_objects(fwd):
+    world = floor_world(fwd)
+    ball = world.add_soft_body(fwd.SoftBody.ball(16).translated(vector(fwd.dim, -0.5, 1, -0.5)))
+    floor = world.rigid_bodies[0]
+    down, above = vector(fwd.dim, 0, -1), vector(fwd.dim, 0, 5)
+    asked = []
+
+    def is_rigid(found):
+        asked.append(found)
+        return found == floor
+
+    assert world.ray_cast(above, down, predicate=is_rigid)["object"] == floor
+    assert set(asked) == {floor, (ball, 0)}
+    assert world.closest_point(above, predicate=is_rigid)["object"] == floor
+    inside = vector(fwd.dim, 0, 1.5)
+    assert world.objects_at(inside, predicate=is_rigid) == []
+    assert [one["object"] for one in world.objects_at(inside, predicate=lambda found: "yes")] == [(ball, 0)]
+    everything = fwd.Shape.ball(9.0)
+    assert [one["object"] for one in world.overlaps(everything, predicate=is_rigid)] == [floor]
+    # The predicate may read the world.
+    heavy = world.ray_cast(above, down, predicate=lambda found: isinstance(found, tuple) and world[found[0]].mass > 1)
+    assert heavy["object"] == (ball, 0)
+    with pytest.raises(ZeroDivisionError):
+        world.ray_cast(above, down, predicate=lambda found: 1 / 0)
+    with pytest.raises(RuntimeError):
+        world.ray_cast(above, down, predicate=lambda found: world.step())
+    assert world.ticks == 0
+
+
+def test_sums_inside_a_region_are_those_of_the_arrays(fwd):
+    world, ball, _ = torn_world(fwd)
+    body = world[ball]
+    left = fwd.Shape.half_space(vector(fwd.dim, 1, 0), vector(fwd.dim, 0.5, 0))
+    rows = body.nodes_in(left)
+    masses = body.node_masses[rows].astype(float)
+    sums = body.sums_inside(left)
+    assert sums["nodes"] == len(rows) and sums["mass"] == pytest.approx(masses.sum())
+    np.testing.assert_allclose(sums["centre"], masses @ body.positions[rows] / masses.sum(), rtol=1e-5)
+    np.testing.assert_allclose(sums["momentum"], masses @ body.velocities[rows], rtol=1e-4, atol=1e-5)
+    force = body.forces[rows].astype(float).sum(axis=0)
+    np.testing.assert_allclose(sums["elastic_force"], force, rtol=1e-3, atol=1e-2)
+    centres = body.cells()[0].mean(axis=1)[np.unique(body.cells()[1], return_index=True)[1]]
+    chosen = (centres[:, 0] <= 0.5) & (body.levels == 0)
+    assert sums["elastic_energy"] >= body.elastic_energy[chosen].sum() * 0.99 > 0
+    assert body.sums_inside(fwd.Shape.ball(0.1, vector(fwd.dim, 50, 0)))["mass"] == 0
+
+
+def test_biot_strain_agrees_with_the_deformation(fwd):
+    world, ball, _ = torn_world(fwd)
+    body = world[ball]
+    stretch = np.array([np.linalg.svd(f)[1] for f in body.deformation])
+    eigenvalues = np.linalg.eigvalsh(body.biot_strain)
+    upright = np.linalg.det(body.deformation) > 0.1
+    np.testing.assert_allclose(eigenvalues[upright], np.sort(stretch[upright] - 1), atol=2e-3)
+
+
+def test_joint_carries_the_weight_of_a_body(fwd):
+    world = fwd.World()
+    weight = world.add_rigid_body(fwd.RigidBody.dynamic(fwd.Shape.ball(0.1), 2.0))
+    top = vector(fwd.dim, 0, 1)
+    joint = world.add_joint(fwd.Joint.spring(top, (weight, vector(fwd.dim, 0, 0)), 500.0, 20.0, 1.0))
+    world.step(300)
+    np.testing.assert_allclose(world.joint_reaction(joint), vector(fwd.dim, 0, -2 * 9.81), atol=0.05)
+    assert world[weight].position[1] == pytest.approx(-2 * 9.81 / 500, rel=0.01)
+    definition = world.joint(joint)
+    assert definition.parameters == {"kind": "spring", "stiffness": 500, "damping": 20, "length": 1}
+    first, (body, _) = definition.anchors
+    np.testing.assert_array_equal(first, top)
+    assert body == weight
+    again = fwd.Joint.spring(*definition.anchors, 500.0, 20.0, 1.0)
+    assert again == definition
+    with pytest.raises(fw.Error, match="stale joint handle"):
+        world.remove(joint)
+        world.joint(joint)
+
+
+def test_knife_feels_the_work_of_its_cut(fwd):
+    world = floor_world(fwd)
+    material = fw.Material(young=2e4, strength=float("inf"))
+    block = world.add_soft_body(fwd.SoftBody.cube(12, 1.0, material))
+    holder = fwd.RigidBody.kinematic(fwd.Shape.ball(0.01), position=vector(fwd.dim, 0.5, 1.1, 0.5), is_sensor=True)
+    holder = world.add_rigid_body(holder)
+    edge = (vector(fwd.dim, 0, 0, -1), vector(fwd.dim, 0, 0, 1))
+    knife = world.add_knife(holder, edge, vector(fwd.dim, 0, -1))
+    assert world.knife_reaction(knife)["force"][1] == 0
+    largest, area = 0.0, 0.0
+    for tick in range(60):
+        world.set_target_position(holder, vector(fwd.dim, 0.5, 1.1 - tick / 100, 0.5))
+        world.step()
+        reaction = world.knife_reaction(knife)
+        np.testing.assert_allclose(reaction["point"], world[holder].position)
+        largest = max(largest, reaction["force"][1])
+        area += sum(event["area"] for event in world.events() if event["type"] == "cut")
+    assert area > 0.1 and largest > 0, "the block resists the knife from below"
+    assert block in world
+
+
+def test_damping_has_the_chosen_ratio(fwd):
+    material = fw.Material(young=4e4).with_damping_ratio(0.05, 5.0, 20.0)
+    assert [material.damping_ratio(f) for f in (5, 20)] == pytest.approx([0.05, 0.05])
+    assert material.damping_ratio(10) < 0.05 and material.young == 4e4
+    only_mass = material.with_damping_ratio(0.1, 2.0)
+    assert only_mass.stiffness_damping == 0 and only_mass.mass_damping == pytest.approx(4 * np.pi * 0.1 * 2)
+    with pytest.raises(fw.Error):
+        material.with_damping_ratio(float("nan"), 1.0)
+    world = fwd.World()
+    body = world.add_soft_body(fwd.SoftBody.ball(8, 1.0, [fw.Material(), fw.Material(stiffness_damping=10.0)]))
+    (first, limited) = world.acting_damping(body)
+    assert first == pytest.approx((4, 2e-4)) and limited[0] == 4 and limited[1] < 0.1
+    assert material.shear_modulus == pytest.approx(4e4 / 2.6)
+
+
+def test_scales_of_a_stiff_body(fwd):
+    stiff = fwd.SoftBody.ball(16, 0.1, fw.Material(young=1e7, strength=float("inf")))
+    for setting, scaled in (("mass_scaled", "mass_scale"), ("softened", "stiffness_scale")):
+        world = fwd.World(stiff_bodies=setting)
+        body = world[world.add_soft_body(stiff)]
+        factor = body.mass_scale if scaled == "mass_scale" else 1 / body.stiffness_scale
+        assert factor > 1 and body.mass_scale / body.stiffness_scale == pytest.approx(factor)
+        assert world.step().largest_scale == pytest.approx(factor)
+    assert body.gravity_scale == 1 and body.inverted_count == 0
+    world.set_gravity_scale(body.handle, 0.5)
+    assert body.gravity_scale == 0.5
+    assert body.range == pytest.approx(8192 * body.grid.voxel_size)

@@ -36,6 +36,7 @@ from ._core import (
     library,
     library_values,
 )
+from ._film import Film
 
 if TYPE_CHECKING:
     from ._sweep import SweepError as SweepError
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Error",
+    "Film",
     "GripHandle",
     "Joint2",
     "Joint3",
