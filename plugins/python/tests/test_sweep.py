@@ -290,14 +290,11 @@ def test_cluster_that_loses_a_node_gives_the_whole_table(serial, calls):
         patch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
         patch.setenv("RAY_USAGE_STATS_ENABLED", "0")
         cluster = Cluster(initialize_head=True, head_node_args=node)
-        second = cluster.add_node(num_cpus=1, object_store_memory=node["object_store_memory"])
-    lost = second.node_id
+        second = cluster.add_node(**node, env_vars={"SECOND_NODE": "yes"})
 
     def measure(world, speed):
-        import ray
-
         # A row on the second node waits there until the test removes this node.
-        if ray.get_runtime_context().get_node_id() == lost:
+        if "SECOND_NODE" in os.environ:
             (folder / f"{os.getpid()}").touch()
             time.sleep(1000)
         return impact(world, speed)

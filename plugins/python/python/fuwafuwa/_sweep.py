@@ -127,7 +127,7 @@ def sweep(
 def _require(name: str, what: str) -> Any:
     try:
         return importlib.import_module(name)
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         raise ImportError(f"{what}: install it with `pip install fuwafuwa[sweep]`") from error
 
 
@@ -390,8 +390,10 @@ def _on_ray(
     """Compute rows on Ray, in the order in which they end."""
     if not missing:
         return
-    limit = _MAX_WAITING if workers is None else workers
-    with _connected(ray, min(limit, len(missing)), address):
+    # A local Ray that starts here has one processor for each worker and keeps to them.
+    is_given = ray.is_initialized() or address is not None
+    limit = workers if is_given and workers is not None else _MAX_WAITING
+    with _connected(ray, min(workers or 1, len(missing)), address):
         task = ray.remote(max_retries=retries, retry_exceptions=False)(_compute)
         functions = ray.put((plan.measure, plan.build))
         waiting: dict[Any, int] = {}
