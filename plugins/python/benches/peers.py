@@ -521,9 +521,8 @@ def main() -> None:
         child.close()
 
     print(f"cores: {len(every)}; one simulated second, medians of {options.rounds} rounds on one core")
-    print(
-        "| engine | size | step | peak squash | wall s | processor s | same bytes: one core, all cores, one and all, rounds |"
-    )
+    print("same bytes: two processes on one core; two on all cores; one core and all; rounds of one process")
+    print("| engine | size | step | peak squash | wall s | processor s | same bytes |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for name, result in results.items():
         rounds = result["rounds"]
