@@ -77,11 +77,13 @@ def test_code_of_guide_runs(
     guide = FOLDER.parents[2] / "docs" / "python.md"
     if not guide.exists():
         pytest.skip("the guide is in the repository, not in the package")
-    for name in ("PIL", "matplotlib", "pyarrow", "pandas"):
-        pytest.importorskip(name, reason=f"the guide requires {name}")
-    monkeypatch.chdir(tmp_path)
-    blocks = re.findall(r"^```python\n(.*?)^```", guide.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    fenced = re.findall(r"^```(\w*)\n(.*?)^```$", guide.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    blocks = [text for language, text in fenced if language == "python"]
     assert len(blocks) >= 6
+    imported = set(re.findall(r"^(?:import|from) (\w+)", "\n".join(blocks), re.MULTILINE))
+    for name in sorted(imported | {"matplotlib", "pyarrow", "pandas"}):
+        pytest.importorskip(name, reason=f"the guide requires {name}: pip install {name}")
+    monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     for index, block in enumerate(blocks):
         # `sweep` reads the source text of functions.
@@ -90,6 +92,6 @@ def test_code_of_guide_runs(
         exec(compile(block, file, "exec"), names)
     printed = capsys.readouterr().out
     assert "pieces" in printed
-    for table in re.findall(r"^```\n(.*?)^```", guide.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE):
-        assert table in printed, "a table of the guide must be the one that its code prints"
+    for language, table in fenced:
+        assert language or table in printed, "a table of the guide must be the one that its code prints"
     assert (tmp_path / "tear.gif").stat().st_size > 1000
