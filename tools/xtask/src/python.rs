@@ -84,7 +84,7 @@ fn check() -> Result<(), Failure> {
     )?;
     // Runs in an empty folder, so that nothing is imported from the sources.
     let mut tests = clean.command("pytest");
-    tests.args(["--quiet", "--durations=10", "-p", "no:cacheprovider"]);
+    tests.args(["--quiet", "-rs", "--durations=10", "-p", "no:cacheprovider"]);
     tests.arg(root().join(PACKAGE).join("tests"));
     execute_in(
         &empty_folder("run")?,
