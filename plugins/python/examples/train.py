@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import csv
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -26,13 +27,17 @@ from fuwafuwa.envs.sb3 import SB3VectorEnv
 
 #: Number of rounds over which the curve averages.
 WINDOW = 200
+#: Number of steps between two stores of the policy.
+STORE = 50_000
 
 
 class Curve(BaseCallback):
     """Writes one row for each update: steps, share of wins and routes among the last rounds, length and return."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, store: Callable[[], None]) -> None:
         super().__init__()
+        self.store = store
+        self.stored = 0
         self.path = path
         self.rounds: list[dict] = []
         self.start = time.perf_counter()
@@ -65,6 +70,9 @@ class Curve(BaseCallback):
         ]
         self.writer.writerow([round(float(value), 4) for value in row])
         self.file.flush()
+        if len(self.rounds) == WINDOW and self.num_timesteps // STORE != self.stored:
+            self.stored = self.num_timesteps // STORE
+            self.store()
         print(" ".join(f"{value:.3f}" if isinstance(value, float) else str(value) for value in row), flush=True)
 
     def _on_training_end(self) -> None:
@@ -113,21 +121,18 @@ def main() -> None:
         device="cpu",
     )
 
-    def store(steps: int) -> None:
+    def store() -> None:
         about = {
             "level": options.level,
             "reward": options.reward,
-            "steps": steps,
+            "steps": model.num_timesteps,
             "seed": options.seed,
             "max_pieces": options.max_pieces,
         }
         policy_of(model, env, about).save(out)
 
-    curve = Curve(out.with_suffix(".csv"))
-    try:
-        model.learn(options.steps, callback=curve)
-    finally:
-        store(model.num_timesteps)
+    model.learn(options.steps, callback=Curve(out.with_suffix(".csv"), store))
+    store()
 
 
 if __name__ == "__main__":

@@ -7,12 +7,12 @@ mod reward;
 use crate::convert::{Any, name_of, named};
 use crate::error::{OrInvalid, invalid_parameter};
 use crate::file::File;
+use crate::picture::{Paint, rgb};
 use episode::{Episode, Settings, Step};
-use fuwafuwa::Vec3;
-use fuwafuwa_painter::solid::{Camera, Scene3d};
-use fuwafuwa_painter::{PaintError, Painter, Pixmap, worlds};
+use fuwafuwa::DimVector;
+use fuwafuwa_painter::{PaintError, Pixmap};
 use fuwafuwa_scenes::disk::reader_in;
-use numpy::ndarray::{Array2, Array3, ArrayView2};
+use numpy::ndarray::{Array2, ArrayView2};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -21,7 +21,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::thread;
 use tamaire_play::level::{MAX_KEPT_BYTES, built_in};
-use tamaire_play::{AnyRound, Level, PLAYERS, Playback, Replay, Route};
+use tamaire_play::{AnyRound, Level, PLAYERS, Playback, Replay, Round, Route};
 
 /// Names of the routes of a win.
 const ROUTES: [(&str, Route); 3] = [
@@ -37,7 +37,7 @@ const MAX_THREADS: usize = 256;
 const MAX_TICKS: u32 = 60;
 
 /// Rounds of a level of the game tamaire. `fuwafuwa.envs` makes them environments.
-#[pyclass(module = "fuwafuwa")]
+#[pyclass(name = "_Rounds", module = "fuwafuwa._core")]
 pub struct Rounds {
     settings: Arc<Settings>,
     episodes: Vec<Episode>,
@@ -55,30 +55,20 @@ fn level_of(source: &str) -> PyResult<Level> {
         let expected = format!("a file or one of {}", known.join(", "));
         return Err(invalid_parameter("level", expected, format!("{source:?}")));
     }
-    let bytes = std::fs::read(path).map_err(|error| crate::error::unreadable(path, &error))?;
+    let bytes = std::fs::read(path).map_err(|error| crate::error::file_error(path, &error))?;
     let folder = path.parent().unwrap_or(Path::new("."));
     Level::read(source, &bytes, &reader_in(folder)).or_invalid()
 }
 
+/// Paints the room of a round.
 fn picture(round: &AnyRound, width: u32) -> Result<Pixmap, PaintError> {
-    let [low, high] = round.level().arena();
+    fn paint<D: Paint>(round: &Round<D>, width: u32) -> Result<Pixmap, PaintError> {
+        let view = round.level().arena().map(D::Vector::from_vec3);
+        D::paint(round.world(), view, width, false)
+    }
     match round {
-        AnyRound::Plane(round) => {
-            let (mut painter, frame) = Painter::for_view([low, high], width);
-            worlds::plane(&mut painter, frame, round.world(), worlds::plane_skin);
-            painter.pixels()
-        }
-        AnyRound::Space(round) => {
-            let (target, across) = (0.5 * (low + high), (high - low).length());
-            let eye = target + across * Vec3::new(0.7, 0.6, 1.8);
-            let mut scene = Scene3d::new(Camera {
-                eye,
-                target,
-                across,
-            });
-            worlds::space(&mut scene, round.world(), worlds::space_skin);
-            scene.pixels(width, width)
-        }
+        AnyRound::Plane(round) => paint(round, width),
+        AnyRound::Space(round) => paint(round, width),
     }
 }
 
@@ -365,11 +355,7 @@ impl Rounds {
         number_in("width", width, 16, 4096)?;
         let episode = self.episode(index)?;
         let image = py.detach(|| picture(episode.round(), width)).or_invalid()?;
-        let shape = (image.height() as usize, image.width() as usize, 3);
-        let pixels = image.pixels().iter();
-        let values = pixels.flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]);
-        let array = Array3::from_shape_vec(shape, values.collect());
-        Ok(array.expect("each pixel has three values").into_pyarray(py))
+        Ok(rgb(&image).into_pyarray(py))
     }
 
     /// Returns the hash of the world of a round.
@@ -388,7 +374,7 @@ impl Rounds {
 }
 
 /// Returns the names of the built-in levels with a basket, and their dimensions.
-#[pyfunction]
+#[pyfunction(name = "_level_names")]
 pub fn level_names() -> Vec<(&'static str, usize)> {
     let levels = built_in().map(|(name, _)| {
         let level = Level::open(name).expect("tests open all built-in levels");
@@ -402,7 +388,7 @@ pub fn level_names() -> Vec<(&'static str, usize)> {
 
 /// Plays a replay: a path or the bytes of the file. Returns the outcome as a dict, or None for a round that was not
 /// won. Raises `Error` where the round differs from the recording.
-#[pyfunction]
+#[pyfunction(name = "_verify_replay")]
 pub fn verify_replay<'py>(
     py: Python<'py>,
     replay: &Any<'py>,

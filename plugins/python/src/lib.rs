@@ -62,12 +62,15 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<world::World2>()?;
     module.add_class::<world::World3>()?;
     module.add_class::<scene::Scene>()?;
-    module.add_class::<game::Rounds>()?;
-    module.add_function(wrap_pyfunction!(game::level_names, module)?)?;
-    module.add_function(wrap_pyfunction!(game::verify_replay, module)?)?;
     module.add_function(wrap_pyfunction!(material::library_names, module)?)?;
     module.add_function(wrap_pyfunction!(material::library_values, module)?)?;
-    // `setattr` keeps the private function out of `__all__`.
+    // `setattr` keeps private names out of `__all__`.
     module.setattr("_gif", wrap_pyfunction!(picture::gif, module)?)?;
+    module.setattr("_Rounds", module.py().get_type::<game::Rounds>())?;
+    module.setattr("_level_names", wrap_pyfunction!(game::level_names, module)?)?;
+    module.setattr(
+        "_verify_replay",
+        wrap_pyfunction!(game::verify_replay, module)?,
+    )?;
     Ok(())
 }

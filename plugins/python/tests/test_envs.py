@@ -12,7 +12,7 @@ gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed"
 from gymnasium.utils.env_checker import check_env  # noqa: E402
 
 import fuwafuwa.envs as envs  # noqa: E402
-from fuwafuwa._core import Rounds  # noqa: E402
+from fuwafuwa._core import _Rounds as Rounds  # noqa: E402
 
 TICK = 1.0 / 60.0
 
@@ -141,7 +141,8 @@ def test_reward_is_the_documented_formula(reward):
 
         def potential(numbers):
             filled = min(numbers["within"] / 0.6, 1.0) - numbers["mean_distance"]
-            shaved = min(1.0 - numbers["kept"], 0.4) / 0.4
+            torn = 1.0 - numbers["kept"]
+            shaved = min(torn / 0.15, 1.0) - 2.0 * max(torn - 0.15, 0.0)
             return filled + (shaved if reward == "shave" else 0.0)
 
         expected = potential(now) - potential(before)

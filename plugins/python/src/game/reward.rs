@@ -2,9 +2,10 @@
 
 use tamaire_play::{AnyRound, Progress, Route};
 
-/// Share of the mass up to which torn-off mass is rewarded on the way to a shaved win.
-const SHAVED: f32 = 0.4;
-/// Weight of the share of the mass that a step tears off, in [`Reward::Squeeze`].
+/// Share of the mass up to which torn-off mass is rewarded on the way to a shaved win. The opening of the level
+/// `classic` has 0.85 of the width of the body.
+const SHAVED: f32 = 0.15;
+/// Cost of tearing the whole mass off: in [`Reward::Squeeze`], and beyond [`SHAVED`] in [`Reward::Shave`].
 const TEARING: f32 = 2.0;
 
 /// Names of the rewards.
@@ -24,7 +25,8 @@ pub enum Reward {
     Shaped,
     /// As `Shaped`, but only a squeezed win counts, and torn-off mass costs.
     Squeeze,
-    /// As `Shaped`, but only a shaved win counts, and torn-off mass is part of the potential.
+    /// As `Shaped`, but only a shaved win counts. Torn-off mass is part of the potential: up to [`SHAVED`] it is
+    /// rewarded, beyond it costs.
     Shave,
 }
 
@@ -41,7 +43,10 @@ impl Reward {
         let (progress, share) = (round.progress(), round.level().game().share);
         let filled = (progress.within / share).min(1.0);
         let shaved = match self {
-            Self::Shave => (1.0 - progress.kept).min(SHAVED) / SHAVED,
+            Self::Shave => {
+                let torn = 1.0 - progress.kept;
+                (torn / SHAVED).min(1.0) - TEARING * (torn - SHAVED).max(0.0)
+            }
             _ => 0.0,
         };
         Standing {

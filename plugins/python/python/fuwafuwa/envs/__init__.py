@@ -13,10 +13,11 @@ PettingZoo, which `fuwafuwa[gym]` installs too.
 from __future__ import annotations
 
 from importlib.resources import files
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
-from .._core import level_names as _levels
-from .._core import verify_replay
+from .._core import _level_names as _levels
+from .._core import _verify_replay
 from ._policy import Policy
 
 try:
@@ -58,6 +59,16 @@ def parallel_env(level: str = "classic", **settings: Any) -> TwoHandsEnv:
     except ImportError as error:
         raise ImportError("parallel_env() requires PettingZoo: install it with `pip install fuwafuwa[gym]`") from error
     return TwoHandsEnv(level, **settings)
+
+
+def verify_replay(replay: str | PathLike[str] | bytes) -> dict[str, Any] | None:
+    """Play a replay, a path or the bytes of the file, and check every hash and the result.
+
+    Returns the outcome: `seconds` on the clock, `route`, the shares of mass `kept` and `inside`, the numbers of `pieces`
+    and of pieces `lost` outside the basket. Returns None for a round that was not won. Raises `fuwafuwa.Error` for a file
+    that is not a replay, and where the round differs from the recording.
+    """
+    return _verify_replay(replay)
 
 
 def trained_policies() -> list[str]:

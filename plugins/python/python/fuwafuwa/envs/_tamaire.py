@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from .._core import Error, Rounds
+from .._core import Error, _Rounds as Rounds
 
 OBSERVATIONS = ("state", "image", "both")
 #: Largest seed of a round.
@@ -77,7 +77,8 @@ class TamaireEnv(gymnasium.Env):
     - "sparse": 1 for the win
     - "shaped": 1 for the win, plus the change of P
     - "squeeze": 1 for a win by squeezing, plus the change of P, minus 2 times the share of mass torn off in the step
-    - "shave": 1 for a win by shaving, plus the change of P + min(1 - kept, 0.4) / 0.4
+    - "shave": 1 for a win by shaving, plus the change of P + min(t / 0.15, 1) - 2 max(t - 0.15, 0), where t = 1 - kept is
+      the share of mass torn off
 
     `info` is a dict with `within`, `inside`, `kept`, `pieces`, `held` [s], `seconds` on the clock, `ticks`, `is_success`
     and `route`: "squeeze", "shave", "mix", or None before a win. "mix" is a win with a torn body that the bars still

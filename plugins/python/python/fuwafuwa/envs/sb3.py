@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from stable_baselines3.common.vec_env import VecEnv
 
-from .._core import Rounds
+from .._core import _Rounds as Rounds
 from ._tamaire import action_space, state_space
 
 
