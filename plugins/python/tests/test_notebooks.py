@@ -70,7 +70,9 @@ def test_runner_reports_failed_check(runner: ModuleType, tmp_path: Path) -> None
         runner.check(tmp_path / "false.ipynb")
 
 
-def test_code_of_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_code_of_guide_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     guide = FOLDER.parents[2] / "docs" / "python.md"
     if not guide.exists():
         pytest.skip("the guide is in the repository, not in the package")
