@@ -261,7 +261,7 @@ fn vectors<D: Dim>(
             true => format!("within {most} m of the origin on each axis"),
             false => "finite".to_owned(),
         };
-        let given = format!("{} at node {}", numbers[place], place / D::N);
+        let given = format!("{:?} at node {}", numbers[place], place / D::N);
         return Err(invalid_parameter(field, expected, given));
     }
     Ok(numbers.chunks_exact(D::N).map(vector_of::<D>).collect())

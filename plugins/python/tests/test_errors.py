@@ -93,9 +93,11 @@ def test_arrays_of_wrong_shape_or_type_are_rejected(fwd):
         body.set_node_states(positions=kept[:-1])
     with rejected("velocities must be an array of float32 or float64"):
         body.set_node_states(velocities=kept.astype(int))
+    with rejected("velocities must be finite, given NaN at node 0"):
+        body.set_node_states(velocities=np.full_like(kept, NAN))
     wrong = kept.copy()
     wrong[5, 1] = np.inf
-    with rejected("positions must be finite, given inf at node 5"):
+    with rejected("positions must be within 1024 m of the origin on each axis, given inf at node 5"):
         body.set_node_states(positions=wrong)
     with rejected("nodes must be a bool array"):
         body.fix_nodes(np.ones(n + 1, bool))
@@ -107,7 +109,7 @@ def test_arrays_of_wrong_shape_or_type_are_rejected(fwd):
     if not misaligned.flags.aligned:
         with rejected("misaligned in memory"):
             body.set_node_states(positions=misaligned)
-    with rejected("positions must be within 1024.0 m of the origin on each axis, given 1e30 at node 0"):
+    with rejected("positions must be within 1024 m of the origin on each axis, given 1e30 at node 0"):
         body.set_node_states(positions=np.full_like(kept, 1e30))
     assert not body.fixed.any()
     np.testing.assert_array_equal(body.positions, kept)

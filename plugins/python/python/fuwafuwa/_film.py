@@ -41,9 +41,9 @@ class Film:
         view: tuple[ArrayLike, ArrayLike] | None = None,
         elements: bool = False,
     ) -> None:
-        if not 1 <= fps <= 240:
-            raise Error(f"fps must be 1 to 240, given {fps!r}")
         self._fps = float(fps)
+        if not 1 <= self._fps <= 240:
+            raise Error(f"fps must be 1 to 240, given {fps!r}")
         self._width = width
         self._view = view
         self._elements = elements
@@ -98,7 +98,8 @@ class Film:
             if act is not None:
                 act(world)
             world.step()
-            due = round(tick * world.tick * self._fps)
+            # The length of a tick is rounded to single precision.
+            due = int(tick * world.tick * self._fps + 1e-3)
             while frames < due:
                 self.add(world)
                 frames += 1
@@ -192,7 +193,7 @@ def _ffmpeg() -> str:
     if found is not None:
         return found
     try:
-        import imageio_ffmpeg  # type: ignore[import-not-found]
+        import imageio_ffmpeg  # type: ignore[import-not-found,import-untyped]
     except ImportError as error:
         raise ImportError(
             "an MP4 file requires ffmpeg: install it with `pip install fuwafuwa[film]`, or put ffmpeg on the PATH; "
