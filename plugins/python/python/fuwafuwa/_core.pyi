@@ -2734,6 +2734,8 @@ class World3:
 
 @final
 class _Rounds:
+    """Rounds of a level of the game tamaire. `fuwafuwa.envs` makes them environments."""
+
     def __new__(
         cls,
         level: str,
@@ -2749,22 +2751,39 @@ class _Rounds:
         threads: int = 1,
     ) -> _Rounds: ...
     @property
-    def observation_names(self, /) -> list[str]: ...
+    def observation_names(self, /) -> list[str]:
+        """Names of the numbers of an observation."""
     @property
-    def action_size(self, /) -> int: ...
+    def action_size(self, /) -> int:
+        """Number of numbers in an action: d for each hand."""
     @property
-    def dim(self, /) -> int: ...
+    def dim(self, /) -> int:
+        """Number of dimensions: 2 or 3."""
     @property
-    def reward(self, /) -> str: ...
-    def reset(self, /, seeds: Sequence[int | None], chosen: Sequence[bool]) -> _F32: ...
+    def reward(self, /) -> str:
+        """Name of the reward."""
+    def reset(self, /, seeds: Sequence[int | None], chosen: Sequence[bool]) -> _F32:
+        """Starts new rounds where `chosen` is true. A seed of None continues the random numbers of the round."""
     def step(
         self, /, actions: _F32, restart: Sequence[bool] | None = None
-    ) -> tuple[_F32, _F64, _Bool, _Bool]: ...
-    def observe(self, /) -> _F32: ...
-    def progress(self, /, index: int) -> dict[str, Any]: ...
-    def rgb(self, /, index: int, width: int) -> _U8: ...
-    def hash(self, /, index: int) -> int: ...
-    def replay(self, /, index: int) -> str: ...
+    ) -> tuple[_F32, _F64, _Bool, _Bool]:
+        """Steps all rounds: actions (count, hands * d) from -1 to 1. Rounds for which `restart` is true start again
+        instead. Returns observations (count, numbers), rewards, terminated and truncated (count,).
+        """
+    def observe(self, /) -> _F32:
+        """Returns the observations (count, numbers)."""
+    def progress(self, /, index: int) -> dict[str, Any]:
+        """Returns the progress of a round as a dict."""
+    def rgb(self, /, index: int, width: int) -> _U8:
+        """Returns a picture of the room of a round: uint8 array (height, width, 3)."""
+    def hash(self, /, index: int) -> int:
+        """Returns the hash of the world of a round."""
+    def replay(self, /, index: int) -> str:
+        """Returns a round as the text of a replay file."""
 
-def _level_names() -> list[tuple[str, int]]: ...
-def _verify_replay(replay: _File) -> dict[str, Any] | None: ...
+def _level_names() -> list[tuple[str, int]]:
+    """Returns the names of the built-in levels with a basket, and their dimensions."""
+def _verify_replay(replay: _File) -> dict[str, Any] | None:
+    """Plays a replay: a path or the bytes of the file. Returns the outcome as a dict, or None for a round that was not
+    won. Raises `Error` where the round differs from the recording.
+    """
