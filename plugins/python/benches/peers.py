@@ -9,8 +9,9 @@ bounces. Nothing tears, because most of the others cannot.
 
 The scenes differ in what cannot be made equal: stress law, damping, contact, and time step. fuwafuwa chooses its step.
 The steps of the others were chosen by hand to be fast: they are stable, and the peak squash, which is in the output, is
-near a third. Finer steps change it: MuJoCo to 41 % with explicit steps of 1/4020 s, Newton to 28 % with 10 iterations
-in steps of 1/600 s, the material point codes by less than 1 %.
+near a third, or a fifth for MuJoCo's quadratic flex, which is too stiff to dent. Finer steps change it: MuJoCo's full
+flex to 41 % with explicit steps of 1/4020 s, Newton to 28 % with 10 iterations in steps of 1/600 s, the material point
+codes by less than one percentage point.
 
 Each engine runs in a process of its own, on one core. The rounds of timing go round robin, so a busy machine slows all
 alike. Imports, compilers, building the scene, and pictures are not in the times. Hashes of the bytes of all positions
