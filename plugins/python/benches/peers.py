@@ -430,7 +430,7 @@ class Child:
     def __init__(self, entry: Entry, cores: set[int], paths: list[str]) -> None:
         job = json.dumps({"name": entry.name, "cores": sorted(cores), "paths": paths})
         # A file, because a pipe that nobody reads would stop an engine that prints much.
-        errors = tempfile.TemporaryFile("w+", errors="replace")
+        errors = tempfile.TemporaryFile("w+", errors="replace")  # noqa: SIM115, closed by `close`
         self.process = subprocess.Popen(
             [sys.executable, __file__, "--serve", job],
             stdin=subprocess.PIPE,
@@ -462,6 +462,7 @@ class Child:
     def close(self) -> None:
         self.pipe(self.process.stdin).close()
         self.process.wait()
+        self.errors.close()
 
 
 def missing(entry: Entry) -> list[str]:
