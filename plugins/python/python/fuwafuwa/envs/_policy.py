@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from os import PathLike
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -34,22 +34,23 @@ class Policy:
 
     def __call__(self, observation: np.ndarray) -> np.ndarray:
         """Return the actions for one observation (numbers,) or several (count, numbers)."""
-        values = np.clip((observation - self.mean) * self.scale, -_CLIP, _CLIP)
+        values: np.ndarray = np.clip((observation - self.mean) * self.scale, -_CLIP, _CLIP)
         for weight, bias in self.layers[:-1]:
             values = np.tanh(values @ weight.T + bias)
         weight, bias = self.layers[-1]
-        return np.clip(values @ weight.T + bias, -1.0, 1.0).astype(np.float32)
+        actions: np.ndarray = np.clip(values @ weight.T + bias, -1.0, 1.0).astype(np.float32)
+        return actions
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the policy as a file of numpy (npz)."""
-        arrays = {"mean": self.mean, "scale": self.scale, "about": np.array(json.dumps(self.about))}
+        arrays: dict[str, Any] = {"mean": self.mean, "scale": self.scale, "about": np.array(json.dumps(self.about))}
         for index, (weight, bias) in enumerate(self.layers):
             arrays |= {f"weight{index}": weight, f"bias{index}": bias}
         np.savez_compressed(path, **arrays)
 
     @classmethod
-    def load(cls, path: str | PathLike[str]) -> Policy:
-        """Read a policy from a file that `save` wrote."""
+    def load(cls, path: str | PathLike[str] | IO[bytes]) -> Policy:
+        """Read a policy from a file that `save` wrote: a path or an open file."""
         with np.load(path, allow_pickle=False) as file:
             count = sum(name.startswith("weight") for name in file.files)
             layers = [(file[f"weight{index}"], file[f"bias{index}"]) for index in range(count)]

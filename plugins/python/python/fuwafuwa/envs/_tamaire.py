@@ -9,7 +9,8 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from .._core import Error, _Rounds as Rounds
+from .._core import Error
+from .._core import _Rounds as Rounds
 
 OBSERVATIONS = ("state", "image", "both")
 #: Largest seed of a round.
@@ -31,7 +32,7 @@ def image_space(rounds: Rounds, width: int) -> spaces.Box:
     return spaces.Box(0, 255, rounds.rgb(0, width).shape, np.uint8)
 
 
-def observation_space(rounds: Rounds, observation: str, width: int) -> spaces.Space:
+def observation_space(rounds: Rounds, observation: str, width: int) -> spaces.Space[Any]:
     """Return the space of observations of a kind."""
     if observation not in OBSERVATIONS:
         names = ", ".join(repr(name) for name in OBSERVATIONS)

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 from gymnasium import spaces
-from pettingzoo import ParallelEnv
+from pettingzoo import ParallelEnv  # type: ignore[import-untyped]
 
 from ._tamaire import TamaireEnv
 
 
-class TwoHandsEnv(ParallelEnv):
+class TwoHandsEnv(ParallelEnv):  # type: ignore[misc]
     """A round of the game for two agents, "hand_0" and "hand_1", which act at the same time and share the reward.
 
     The keywords are those of `TamaireEnv`, except `hands` and `observation`. Both agents observe the whole state vector:
@@ -29,21 +29,23 @@ class TwoHandsEnv(ParallelEnv):
         self._observation_space = self.env.observation_space
         self._action_spaces = {agent: spaces.Box(-1.0, 1.0, (d,), np.float32) for agent in self.possible_agents}
 
-    def observation_space(self, agent: str) -> spaces.Space:
+    def observation_space(self, agent: str) -> spaces.Space[Any]:
         """Return the space of observations, which is the same for both agents."""
         return self._observation_space
 
-    def action_space(self, agent: str) -> spaces.Space:
+    def action_space(self, agent: str) -> spaces.Space[Any]:
         """Return the space of actions of an agent."""
         return self._action_spaces[agent]
 
-    def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[dict, dict]:
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Any], dict[str, Any]]:
         """Start a new round. Returns the observations and the infos of the agents."""
         state, info = self.env.reset(seed=seed)
         self.agents = list(self.possible_agents)
         return self._each(state), self._each(info)
 
-    def step(self, actions: dict[str, np.ndarray]) -> tuple[dict, dict, dict, dict, dict]:
+    def step(self, actions: dict[str, np.ndarray]) -> tuple[dict[str, Any], ...]:
         """Hold the actions of both agents for a step."""
         action = np.concatenate([np.asarray(actions[agent], np.float32) for agent in self.possible_agents])
         results = self.env.step(action)
@@ -58,7 +60,8 @@ class TwoHandsEnv(ParallelEnv):
 
     def state(self) -> np.ndarray:
         """Return the state vector."""
-        return self.env.rounds.observe()[0]
+        state: np.ndarray = self.env.rounds.observe()[0]
+        return state
 
     def replay(self) -> str:
         """Return the round up to now as the text of a replay file of the game."""

@@ -8,7 +8,8 @@ import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from .._core import Error, _Rounds as Rounds
+from .._core import Error
+from .._core import _Rounds as Rounds
 from ._tamaire import _SEEDS, action_space, state_space
 
 

@@ -43,7 +43,7 @@ class SB3VectorEnv(VecEnv):
         self._return += rewards
         done = terminated | truncated
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        for index in np.flatnonzero(done):
+        for index in np.flatnonzero(done).tolist():
             infos[index] = self.rounds.progress(index) | {
                 "terminal_observation": observations[index].copy(),
                 "TimeLimit.truncated": bool(truncated[index]),
