@@ -2,8 +2,8 @@
 
     python benches/environments.py
 
-Requires `pip install fuwafuwa[gym]` and Linux, whose processors the script chooses. It prints, as medians of several
-runs that take turns:
+Requires `pip install fuwafuwa[gym]` and Linux, whose processors the script chooses. It prints medians of several
+runs:
 
 - steps per second of one environment with state observations on one processor, for players with different bodies: at
   rest, squeezed, shaved, and torn by random actions
@@ -72,7 +72,7 @@ def main() -> None:
     processors = sorted(os.sched_getaffinity(0))
     os.sched_setaffinity(0, processors[:1])
     print(f"one environment, steps per second, medians of {RUNS} runs of {STEPS} steps")
-    found = {name: [rate(player) for _ in range(RUNS)] for name, player in players().items()}
+    found = {name: [rate(players()[name]) for _ in range(RUNS)] for name in players()}
     for name, runs in found.items():
         steps, pieces = (statistics.median(column) for column in zip(*runs, strict=True))
         print(f"  {name:20} {steps:6.0f}   with {pieces:.0f} pieces on average")

@@ -34,9 +34,9 @@ def notebooks() -> list[Path]:
 
 
 def printed(notebook: Any) -> list[str]:
-    """Return the text that each code cell printed."""
+    """Return the text that each code cell printed, without warnings."""
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    return ["".join(part.text for part in cell.outputs if part.output_type == "stream") for cell in cells]
+    return ["".join(part.text for part in cell.outputs if part.get("name") == "stdout") for cell in cells]
 
 
 def execute(path: Path) -> Any:
@@ -102,13 +102,15 @@ def main() -> int:
     unknown = [name for name in arguments.names if name not in known]
     if unknown:
         parser.error(f"unknown notebook {unknown[0]!r}, expected one of {', '.join(known)}")
+    from nbclient.exceptions import CellExecutionError
+
     failed = False
     for name in arguments.names or known:
         start = time.perf_counter()
         try:
             (write if arguments.write else check)(known[name])
             result = "written" if arguments.write else "passed"
-        except Mismatch as error:
+        except (Mismatch, CellExecutionError) as error:
             failed, result = True, f"FAILED\n{error}"
         print(f"{name}: {result}, {time.perf_counter() - start:.0f} s", flush=True)
     return int(failed)

@@ -5,7 +5,7 @@ mod observation;
 mod reward;
 
 use crate::convert::{Any, name_of, named};
-use crate::error::{OrInvalid, invalid_parameter};
+use crate::error::{OrInvalid, file_error, invalid, invalid_parameter};
 use crate::file::File;
 use crate::picture::{Paint, rgb};
 use episode::{Episode, Settings, Step};
@@ -16,7 +16,7 @@ use numpy::ndarray::{Array2, ArrayView2};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use reward::{REWARDS, Reward};
+use reward::REWARDS;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::thread;
@@ -30,14 +30,15 @@ const ROUTES: [(&str, Route); 3] = [
     ("mix", Route::Mix),
 ];
 /// Maximum number of rounds.
-const MAX_ROUNDS: usize = 4096;
+const MAX_ROUNDS: i64 = 4096;
 /// Maximum number of threads.
-const MAX_THREADS: usize = 256;
+const MAX_THREADS: i64 = 256;
 /// Maximum number of ticks in a step: one second.
-const MAX_TICKS: u32 = 60;
+const MAX_TICKS: i64 = 60;
 
 /// Rounds of a level of the game tamaire. `fuwafuwa.envs` makes them environments.
 #[pyclass(name = "_Rounds", module = "fuwafuwa._core")]
+#[derive(Clone)]
 pub struct Rounds {
     settings: Arc<Settings>,
     episodes: Vec<Episode>,
@@ -55,7 +56,7 @@ fn level_of(source: &str) -> PyResult<Level> {
         let expected = format!("a file or one of {}", known.join(", "));
         return Err(invalid_parameter("level", expected, format!("{source:?}")));
     }
-    let bytes = std::fs::read(path).map_err(|error| crate::error::file_error(path, &error))?;
+    let bytes = std::fs::read(path).map_err(|error| file_error(path, &error))?;
     let folder = path.parent().unwrap_or(Path::new("."));
     Level::read(source, &bytes, &reader_in(folder)).or_invalid()
 }
@@ -191,49 +192,52 @@ impl Rounds {
 impl Rounds {
     #[new]
     #[pyo3(signature = (
-        level, count=1, *, reward="shaped", ticks_per_step=4, max_speed=2.0, max_steps=0, max_pieces=0, players=1,
+        level, num_envs=1, *, reward="shaped", ticks_per_step=4, max_speed=2.0, max_steps=300, max_pieces=0, hands=1,
         random_start=true, threads=1
     ))]
     #[allow(clippy::too_many_arguments)] // all but two are keywords with defaults
     fn new(
         py: Python<'_>,
         level: &str,
-        count: usize,
+        num_envs: i64,
         reward: &str,
-        ticks_per_step: u32,
+        ticks_per_step: i64,
         max_speed: f32,
-        max_steps: u32,
-        max_pieces: usize,
-        players: usize,
+        max_steps: i64,
+        max_pieces: i64,
+        hands: i64,
         random_start: bool,
-        threads: usize,
+        threads: i64,
     ) -> PyResult<Self> {
-        number_in("count", count, 1, MAX_ROUNDS)?;
-        number_in("threads", threads, 1, MAX_THREADS)?;
+        let count = number_in("num_envs", num_envs, 1, MAX_ROUNDS)? as usize;
+        let threads = number_in("threads", threads, 1, MAX_THREADS)? as usize;
         let (reward, level) = (named("reward", reward, &REWARDS)?, level_of(level)?);
         if level.game().all_baskets().is_empty() {
             let given = format!("{:?}", level.id);
             return Err(invalid_parameter("level", "a level with a basket", given));
         }
-        let hands = level
+        let leaders = level
             .scene()
             .hand
             .iter()
-            .filter(|hand| hand.follows.is_none())
-            .count();
+            .filter(|hand| hand.follows.is_none());
+        let most_hands = PLAYERS.min(leaders.count()) as i64;
+        let limit = i64::from(i32::MAX);
         let settings = Settings {
             level: Arc::new(level),
             reward,
-            ticks: number_in("ticks_per_step", ticks_per_step, 1, MAX_TICKS)?,
+            ticks: number_in("ticks_per_step", ticks_per_step, 1, MAX_TICKS)? as u32,
             max_speed: number_in("max_speed", max_speed, 0.01, tamaire_play::round::TOP_SPEED)?,
-            max_steps,
-            max_pieces,
-            players: number_in("players", players, 1, PLAYERS.min(hands))?,
+            max_steps: number_in("max_steps", max_steps, 0, limit)? as u32,
+            max_pieces: number_in("max_pieces", max_pieces, 0, limit)? as usize,
+            players: number_in("hands", hands, 1, most_hands)? as usize,
             random_start,
         };
         let settings = Arc::new(settings);
         let first = py.detach(|| Episode::new(settings.clone()));
-        let episodes = vec![first; count];
+        let episodes = (0..count)
+            .map(|_| first.with_own_random_numbers())
+            .collect();
         Ok(Self {
             settings,
             episodes,
@@ -276,7 +280,11 @@ impl Rounds {
         actions: PyReadonlyArray2<'py, f32>,
         restart: Option<Vec<bool>>,
     ) -> PyResult<Bound<'py, PyTuple>> {
-        let actions = self.actions(&actions)?;
+        if self.episodes.iter().any(|episode| !episode.has_begun()) {
+            return Err(invalid("reset() must be called before step()"));
+        }
+        // Copied, because other threads of Python may write into the array while this one releases the GIL.
+        let actions = self.actions(&actions)?.to_owned();
         let restart = restart.unwrap_or_else(|| vec![false; self.episodes.len()]);
         self.check_count("restart", restart.len())?;
         let results = self.for_each(py, |index, episode| {
@@ -319,10 +327,12 @@ impl Rounds {
         self.settings.dim()
     }
 
-    /// Name of the reward.
-    #[getter]
-    fn reward(&self) -> &'static str {
-        name_of::<Reward>(self.settings.reward, &REWARDS)
+    fn __copy__(&self) -> Self {
+        self.clone()
+    }
+
+    fn __deepcopy__(&self, _memo: &Any<'_>) -> Self {
+        self.clone()
     }
 
     /// Returns the progress of a round as a dict.
@@ -373,16 +383,16 @@ impl Rounds {
     }
 }
 
-/// Returns the names of the built-in levels with a basket, and their dimensions.
+/// Returns the names of the built-in levels with a basket.
 #[pyfunction(name = "_level_names")]
-pub fn level_names() -> Vec<(&'static str, usize)> {
-    let levels = built_in().map(|(name, _)| {
+pub fn level_names() -> Vec<&'static str> {
+    let has_basket = |name: &&str| {
         let level = Level::open(name).expect("tests open all built-in levels");
-        (name, level)
-    });
-    let levels = levels.filter(|(_, level)| !level.game().all_baskets().is_empty());
-    levels
-        .map(|(name, level)| (name, usize::from(level.scene().dim)))
+        !level.game().all_baskets().is_empty()
+    };
+    built_in()
+        .map(|(name, _)| name)
+        .filter(has_basket)
         .collect()
 }
 

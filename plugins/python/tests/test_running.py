@@ -1,8 +1,6 @@
 """Memory, threads and overhead."""
 
 import multiprocessing
-import resource
-import sys
 import threading
 import time
 
@@ -10,31 +8,6 @@ import pytest
 from conftest import classes, floor_world, torn_world
 
 import fuwafuwa as fw
-
-
-def memory():
-    """Return the largest memory of this process so far [MiB]."""
-    unit = 1 if sys.platform == "darwin" else 1024
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 2**20
-
-
-def test_ten_thousand_worlds_use_no_more_memory_than_a_thousand():
-    fwd = classes(2)
-    disc = fwd.SoftBody.ball(12)
-
-    def make(count):
-        for _ in range(count):
-            world = floor_world(fwd)
-            ball = world.add_soft_body(disc)
-            world.step()
-            assert len(world[ball].positions) == world[ball].node_count
-            world.events()
-            type(world).restore(world.snapshot())
-
-    make(1000)
-    before = memory()
-    make(9000)
-    assert memory() - before < 8
 
 
 def test_worlds_in_two_threads_have_the_bits_of_one_thread():
@@ -78,27 +51,6 @@ def test_other_threads_run_during_a_step():
     assert rounds > 5, "the main thread runs while the world steps"
     assert refused > 5, "a world that steps refuses other calls"
     assert world.ticks == 60
-
-
-def test_step_costs_little_more_than_in_rust():
-    world = floor_world(classes(2))
-    world.add_soft_body(fw.SoftBody2.ball(16))
-    world.step(900)
-
-    def shortest(work):
-        times = []
-        for _ in range(7):
-            start = time.perf_counter()
-            work()
-            times.append(time.perf_counter() - start)
-        return min(times) / 1000
-
-    def steps():
-        for _ in range(1000):
-            world.step()
-
-    overhead = shortest(steps) - shortest(lambda: world.step(1000))
-    assert overhead < 10e-6, f"{overhead * 1e6:.1f} µs"
 
 
 @pytest.mark.skipif(not hasattr(__import__("signal"), "setitimer"), reason="needs an alarm of POSIX")

@@ -2739,14 +2739,14 @@ class _Rounds:
     def __new__(
         cls,
         level: str,
-        count: int = 1,
+        num_envs: int = 1,
         *,
         reward: str = "shaped",
         ticks_per_step: int = 4,
         max_speed: float = 2.0,
-        max_steps: int = 0,
+        max_steps: int = 300,
         max_pieces: int = 0,
-        players: int = 1,
+        hands: int = 1,
         random_start: bool = True,
         threads: int = 1,
     ) -> _Rounds: ...
@@ -2759,9 +2759,6 @@ class _Rounds:
     @property
     def dim(self, /) -> int:
         """Number of dimensions: 2 or 3."""
-    @property
-    def reward(self, /) -> str:
-        """Name of the reward."""
     def reset(self, /, seeds: Sequence[int | None], chosen: Sequence[bool]) -> _F32:
         """Starts new rounds where `chosen` is true. A seed of None continues the random numbers of the round."""
     def step(
@@ -2780,9 +2777,11 @@ class _Rounds:
         """Returns the hash of the world of a round."""
     def replay(self, /, index: int) -> str:
         """Returns a round as the text of a replay file."""
+    def __copy__(self, /) -> _Rounds: ...
+    def __deepcopy__(self, _memo: Any, /) -> _Rounds: ...
 
-def _level_names() -> list[tuple[str, int]]:
-    """Returns the names of the built-in levels with a basket, and their dimensions."""
+def _level_names() -> list[str]:
+    """Returns the names of the built-in levels with a basket."""
 def _verify_replay(replay: _File) -> dict[str, Any] | None:
     """Plays a replay: a path or the bytes of the file. Returns the outcome as a dict, or None for a round that was not
     won. Raises `Error` where the round differs from the recording.

@@ -71,9 +71,9 @@ def sweep(
 
     results: Parquet file that holds the finished rows. If it exists, its rows are not computed again. It is refused,
     and stays as it is, if it comes from other parameters, another scene, another `measure` or another version of the
-    engine. It is replaced as a whole whenever rows have ended, at most for a twentieth of the time.
+    engine. The file is replaced as a whole. Writing takes at most 5 % of the time.
 
-    workers: number of rows that run at once. 1 runs them in this process; more start a local Ray with so many
+    workers: number of rows that run at once. Without an address, 1 runs them in this process; more start a local Ray with so many
     processes. By default, all processors of Ray, if this process is connected to Ray or an address is given;
     otherwise 1.
 

@@ -72,6 +72,7 @@ pub struct Episode {
     random: fastrand::Rng,
     steps: u32,
     standing: Standing,
+    has_begun: bool,
 }
 
 /// Evaluates an expression for the round of either dimension.
@@ -95,7 +96,22 @@ impl Episode {
             random,
             steps: 0,
             standing: Standing::default(),
+            has_begun: false,
         }
+    }
+
+    /// Returns a copy whose random numbers differ from those of all others, until a seed is set.
+    pub fn with_own_random_numbers(&self) -> Self {
+        let random = fastrand::Rng::new();
+        Self {
+            random,
+            ..self.clone()
+        }
+    }
+
+    /// Returns whether a round was started.
+    pub fn has_begun(&self) -> bool {
+        self.has_begun
     }
 
     /// Returns the round.
@@ -110,6 +126,7 @@ impl Episode {
         }
         self.round = AnyRound::new(self.settings.level.clone());
         self.steps = 0;
+        self.has_begun = true;
         self.open();
         self.standing = self.standing_now();
     }
@@ -209,24 +226,41 @@ impl Episode {
     }
 }
 
-/// Returns a random place for each hand to which a straight, free way leads; the hand's own place if none is found [m].
+/// Returns a random place for each hand [m] to which a straight way leads that is free of obstacles, bodies and the
+/// other hands. If none is found, it is the hand's own place.
 fn free_places<D: Dim>(round: &Round<D>, random: &mut fastrand::Rng, players: usize) -> Vec<Vec3> {
     let [low, high] = round.level().arena();
-    let fixed = round.world().rigid_bodies().map(|(_, body)| body);
-    let fixed =
-        fixed.filter(|body| body.motion_type() != MotionType::Kinematic && !body.is_sensor());
-    let hands: Vec<_> = round.hands().take(players).collect();
-    let is_hand = |position: D::Vector| hands.iter().any(|hand| hand.position() == position);
-    let obstacles: Vec<Shape<D>> = fixed
-        .filter(|body| !is_hand(body.position()))
+    let hands = round.hands().take(players);
+    let hands: Vec<(Vec3, f32)> = hands
+        .map(|hand| (hand.position().to_vec3(), hand.shape().inradius()))
+        .collect();
+    let solid = round.world().rigid_bodies().map(|(_, body)| body);
+    let solid =
+        solid.filter(|body| body.motion_type() != MotionType::Kinematic && !body.is_sensor());
+    let is_hand = |position: Vec3| hands.iter().any(|hand| hand.0 == position);
+    let obstacles: Vec<Shape<D>> = solid
+        .filter(|body| !is_hand(body.position().to_vec3()))
         .map(|body| body.shape())
         .collect();
-    let mut place_of = |from: Vec3, radius: f32| {
+    let points = |from: Vec3, to: Vec3| {
+        let shares = (0..=POINTS).map(|point| point as f32 / POINTS as f32);
+        shares.rev().map(move |share| from + (to - from) * share)
+    };
+    // Ways of the hands; those of later hands are still points.
+    let mut ways: Vec<[Vec3; 2]> = hands.iter().map(|(from, _)| [*from; 2]).collect();
+    for (index, &(from, radius)) in hands.iter().enumerate() {
         let is_free = |at: Vec3| {
-            let at = D::Vector::from_vec3(at);
             let margin = radius + CLEARANCE;
-            obstacles.iter().all(|shape| shape.distance(at).0 > margin)
-                && round.distance_to_bodies(at) > margin
+            let others = hands.iter().zip(&ways).enumerate();
+            let mut others = others.filter(|(other, _)| *other != index);
+            let place = D::Vector::from_vec3(at);
+            obstacles
+                .iter()
+                .all(|shape| shape.distance(place).0 > margin)
+                && others.all(|(_, (hand, way))| {
+                    points(way[0], way[1]).all(|point| (point - at).length() > margin + hand.1)
+                })
+                && round.distance_to_bodies(place) > margin
         };
         let mut place = || {
             let shares = Vec3::from([0; 3].map(|_: i32| random.f32()));
@@ -236,16 +270,10 @@ fn free_places<D: Dim>(round: &Round<D>, random: &mut fastrand::Rng, players: us
             }
             place
         };
-        let leads_free = |to: &Vec3| {
-            let points = (1..=POINTS).map(|point| point as f32 / POINTS as f32);
-            points
-                .rev()
-                .all(|share| is_free(from + (*to - from) * share))
-        };
-        (0..TRIES).map(|_| place()).find(leads_free).unwrap_or(from)
-    };
-    let hands = hands
-        .iter()
-        .map(|hand| (hand.position().to_vec3(), hand.shape().inradius()));
-    hands.map(|(from, radius)| place_of(from, radius)).collect()
+        // The point at which the hand is now does not count.
+        let leads_free = |to: &Vec3| points(from, *to).take(POINTS).all(is_free);
+        let found = (0..TRIES).map(|_| place()).find(leads_free);
+        ways[index] = [from, found.unwrap_or(from)];
+    }
+    ways.into_iter().map(|way| way[1]).collect()
 }

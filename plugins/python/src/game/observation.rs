@@ -24,7 +24,7 @@ pub fn names(dim: usize, players: usize) -> Vec<String> {
         "within",
         "inside",
         "kept",
-        "held",
+        "held_share",
         "pieces",
         "mean_distance",
         "time_left",

@@ -8,6 +8,9 @@ const SHAVED: f32 = 0.15;
 /// Cost of tearing the whole mass off: in [`Reward::Squeeze`], and beyond [`SHAVED`] in [`Reward::Shave`].
 const TEARING: f32 = 2.0;
 
+/// Reward of a win on top of a potential, whose change over a won round is about 2.
+const WIN: f32 = 5.0;
+
 /// Names of the rewards.
 pub const REWARDS: [(&str, Reward); 4] = [
     ("sparse", Reward::Sparse),
@@ -21,7 +24,7 @@ pub const REWARDS: [(&str, Reward); 4] = [
 pub enum Reward {
     /// 1 for the win.
     Sparse,
-    /// 1 for the win, and the change of the potential.
+    /// [`WIN`] for the win, and the change of the potential.
     Shaped,
     /// As `Shaped`, but only a squeezed win counts, and torn-off mass costs.
     Squeeze,
@@ -67,8 +70,8 @@ impl Reward {
         let gain = now.potential - before.potential;
         match self {
             Self::Sparse => win,
-            Self::Shaped | Self::Shave => win + gain,
-            Self::Squeeze => win + gain - TEARING * (before.kept - now.kept).max(0.0),
+            Self::Shaped | Self::Shave => WIN * win + gain,
+            Self::Squeeze => WIN * win + gain - TEARING * (before.kept - now.kept).max(0.0),
         }
     }
 }

@@ -22,11 +22,11 @@ from ._policy import Policy
 
 try:
     from gymnasium.envs.registration import register as _register
-
-    from ._tamaire import TamaireEnv
-    from ._vector import TamaireVectorEnv
-except ImportError as error:
+except ModuleNotFoundError as error:
     raise ImportError("fuwafuwa.envs requires gymnasium: install it with `pip install fuwafuwa[gym]`") from error
+
+from ._tamaire import TamaireEnv
+from ._vector import TamaireVectorEnv
 
 if TYPE_CHECKING:
     from ._two_hands import TwoHandsEnv
@@ -49,25 +49,27 @@ _LONG = 900
 def level_names() -> dict[str, str]:
     """Return the names of the built-in levels with a basket, and the id of the environment of each."""
     known = {"classic": "Tamaire-v0", "classic-3d": "Tamaire3D-v0"}
-    return {name: known.get(name, f"Tamaire-{name}-v0") for name, _ in _levels()}
+    return {name: known.get(name, f"Tamaire-{name}-v0") for name in _levels()}
 
 
 def parallel_env(level: str = "classic", **settings: Any) -> TwoHandsEnv:
     """Return an environment of PettingZoo in which two agents have a hand each; see `TwoHandsEnv`."""
     try:
         from ._two_hands import TwoHandsEnv
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         raise ImportError("parallel_env() requires PettingZoo: install it with `pip install fuwafuwa[gym]`") from error
     return TwoHandsEnv(level, **settings)
 
 
 def verify_replay(replay: str | PathLike[str] | bytes) -> dict[str, Any] | None:
-    """Play a replay, a path or the bytes of the file, and check every hash and the result.
+    """Play a replay and check every hash and the result. `replay` is a path, the bytes of the file, or its text.
 
     Returns the outcome: `seconds` on the clock, `route`, the shares of mass `kept` and `inside`, the numbers of `pieces`
     and of pieces `lost` outside the basket. Returns None for a round that was not won. Raises `fuwafuwa.Error` for a file
     that is not a replay, and where the round differs from the recording.
     """
+    if isinstance(replay, str) and "\n" in replay:
+        replay = replay.encode()
     return _verify_replay(replay)
 
 

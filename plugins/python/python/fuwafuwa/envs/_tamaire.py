@@ -67,7 +67,7 @@ class TamaireEnv(gymnasium.Env):
     follows its target with a limited force, as in the game.
 
     Observation "state": float32 array (numbers,); `observation_names` names each number. Lengths are in metres,
-    velocities in m/s, forces in newtons, masses in shares of the whole mass. For each hand: position, velocity, offset of
+    velocities in m/s, forces in newtons; masses are shares of the whole mass. For each hand: position, velocity, offset of
     the target, and contact force. Then the corners of the (first) basket; the shares of mass within the basket, and at
     rest inside; the share of mass kept in the largest piece of each body; the share of the time that enough mass has
     rested; the number of pieces; the mean distance of the mass from the basket; the share of steps left. Then, for the
@@ -76,17 +76,17 @@ class TamaireEnv(gymnasium.Env):
     Rewards of a step, where the potential P = min(within / share, 1) - mean_distance [m]:
 
     - "sparse": 1 for the win
-    - "shaped": 1 for the win, plus the change of P
-    - "squeeze": 1 for a win by squeezing, plus the change of P, minus 2 times the share of mass torn off in the step
-    - "shave": 1 for a win by shaving, plus the change of P + min(t / 0.15, 1) - 2 max(t - 0.15, 0), where t = 1 - kept is
+    - "shaped": 5 for the win, plus the change of P
+    - "squeeze": 5 for a win by squeezing, plus the change of P, minus 2 × the share of mass torn off in this step
+    - "shave": 5 for a win by shaving, plus the change of P + min(t / 0.15, 1) - 2 max(t - 0.15, 0), where t = 1 - kept is
       the share of mass torn off
 
     `info` is a dict with `within`, `inside`, `kept`, `pieces`, `held` [s], `seconds` on the clock, `ticks`, `is_success`
-    and `route`: "squeeze", "shave", "mix", or None before a win. "mix" is a win with a torn body that the bars still
-    squeeze.
+    and `route`: "squeeze", "shave", "mix", or None before a win. "mix": the body was torn, and the bars still squeeze it.
 
     The same seed and the same actions give the same bits on every computer. `replay()` returns the round as a file that
-    the game plays and verifies.
+    the game plays and verifies. `copy.deepcopy` copies an environment in the middle of a round; environments cannot be
+    pickled.
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 15}
@@ -118,7 +118,7 @@ class TamaireEnv(gymnasium.Env):
             max_steps=max_steps,
             max_pieces=max_pieces,
             random_start=random_start,
-            players=hands,
+            hands=hands,
         )
         self.metadata = self.metadata | {"render_fps": 60 / ticks_per_step}
         self.render_mode = render_mode

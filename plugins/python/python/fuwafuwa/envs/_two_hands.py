@@ -8,20 +8,30 @@ import numpy as np
 from gymnasium import spaces
 from pettingzoo import ParallelEnv  # type: ignore[import-untyped]
 
+from .._core import Error
 from ._tamaire import TamaireEnv
 
 
 class TwoHandsEnv(ParallelEnv):  # type: ignore[misc]
     """A round of the game for two agents, "hand_0" and "hand_1", which act at the same time and share the reward.
 
-    The keywords are those of `TamaireEnv`, except `hands` and `observation`. Both agents observe the whole state vector:
+    The keywords are those of `TamaireEnv`, except `hands`, and `observation`, which is "state". Both agents observe the whole state vector:
     float32 array (numbers,). An action is the velocity of the agent's own hand: float32 array (d,) from -1 to 1.
     """
 
-    metadata = {"name": "tamaire_v0", "render_modes": ["human", "rgb_array"], "is_parallelizable": True}
+    metadata = {
+        "name": "tamaire_v0",
+        "render_modes": ["human", "rgb_array"],
+        "is_parallelizable": True,
+        "render_fps": 15,
+    }
 
     def __init__(self, level: str = "classic", *, render_mode: str | None = None, **settings: Any) -> None:
+        for name in ("hands", "observation"):
+            if name in settings:
+                raise Error(f"{name} cannot be chosen: there are two hands, which observe the state vector")
         self.env = TamaireEnv(level, hands=2, render_mode=render_mode, **settings)
+        self.metadata = self.metadata | {"render_fps": self.env.metadata["render_fps"]}
         self.render_mode = render_mode
         self.possible_agents = ["hand_0", "hand_1"]
         self.agents: list[str] = []
@@ -46,7 +56,9 @@ class TwoHandsEnv(ParallelEnv):  # type: ignore[misc]
         return self._each(state), self._each(info)
 
     def step(self, actions: dict[str, np.ndarray]) -> tuple[dict[str, Any], ...]:
-        """Hold the actions of both agents for a step."""
+        """Hold the actions of both agents for a step. After the end of a round, returns empty dicts."""
+        if not self.agents:
+            return ({}, {}, {}, {}, {})
         action = np.concatenate([np.asarray(actions[agent], np.float32) for agent in self.possible_agents])
         results = self.env.step(action)
         answer = tuple(self._each(result) for result in results)

@@ -14,13 +14,13 @@ from ._tamaire import _SEEDS, action_space, state_space
 
 
 class TamaireVectorEnv(VectorEnv):
-    """`num_envs` rounds of a level, which are stepped on `threads` Rust threads without copies of Python.
+    """`num_envs` rounds of a level, which are stepped on `threads` Rust threads in one Python process.
 
-    The other keywords are those of `TamaireEnv`. Observations are state vectors: float32 array (num_envs, numbers). A
-    round that has ended starts again in the next step, whose action and reward then do not count (autoreset mode
-    "next step"). Infos hold an array for each key of the info of `TamaireEnv`.
+    The other keywords are those of `TamaireEnv`, except that only state vectors can be observed: float32 array
+    (num_envs, numbers). A round that has ended starts again in the next step, whose action and reward then do not count
+    (autoreset mode "next step"). Infos hold an array for each key of the info of `TamaireEnv`.
 
-    The number of threads changes no bit. Rounds of one vector environment differ in their seeds: seed + index.
+    The number of threads changes no bit. `reset(seed=s)` starts the rounds of the seeds s, s + 1, …
     """
 
     metadata = {"autoreset_mode": AutoresetMode.NEXT_STEP, "render_modes": ["rgb_array"], "render_fps": 15}
@@ -31,15 +31,18 @@ class TamaireVectorEnv(VectorEnv):
         num_envs: int = 16,
         *,
         threads: int = 1,
-        hands: int = 1,
-        max_steps: int = 300,
+        observation: str = "state",
+        ticks_per_step: int = 4,
         render_mode: str | None = None,
         render_width: int = 320,
         **settings: Any,
     ) -> None:
+        if observation != "state":
+            raise Error(f"observation must be 'state' in a vector environment, given {observation!r}")
         if render_mode not in (None, "rgb_array"):
             raise Error(f"render_mode must be None or 'rgb_array', given {render_mode!r}")
-        self.rounds = Rounds(str(level), num_envs, threads=threads, players=hands, max_steps=max_steps, **settings)
+        self.rounds = Rounds(str(level), num_envs, threads=threads, ticks_per_step=ticks_per_step, **settings)
+        self.metadata = self.metadata | {"render_fps": 60 / ticks_per_step}
         self.num_envs = num_envs
         self.render_mode = render_mode
         self._render_width = render_width
@@ -54,13 +57,13 @@ class TamaireVectorEnv(VectorEnv):
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Start new rounds. Returns the observations and the infos. There are no options."""
         if seed is None or isinstance(seed, (int, np.integer)):
-            super().reset(seed=seed)
+            super().reset(seed=None if seed is None else int(seed))
             first = int(self.np_random.integers(_SEEDS // 2)) if seed is None else int(seed)
             seeds: list[int | None] = [first + index for index in range(self.num_envs)]
         else:
-            seeds = list(seed)
+            seeds = [None if one is None else int(one) for one in seed]
+        states = self.rounds.reset([mixed(one) for one in seeds], [True] * self.num_envs)
         self._is_over[:] = False
-        states = self.rounds.reset([_mixed(seed) for seed in seeds], [True] * self.num_envs)
         return states, self._infos()
 
     def step(self, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
@@ -85,7 +88,7 @@ class TamaireVectorEnv(VectorEnv):
         return {key: np.array([row[key] for row in progress]) for key in progress[0]}
 
 
-def _mixed(seed: int | None) -> int | None:
+def mixed(seed: int | None) -> int | None:
     """Return the seed of the round that `TamaireEnv.reset(seed=seed)` plays."""
     if seed is None:
         return None

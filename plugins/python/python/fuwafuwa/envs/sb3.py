@@ -10,25 +10,27 @@ from stable_baselines3.common.vec_env import VecEnv
 
 from .._core import _Rounds as Rounds
 from ._tamaire import action_space, state_space
+from ._vector import mixed
 
 
 class SB3VectorEnv(VecEnv):
     """Vector environment of stable-baselines3 that steps `count` rounds of a level on Rust threads.
 
-    The keywords are those of `TamaireEnv`. Observations are state vectors, float32 array (count, numbers). A round that
-    ends starts again in the same step, with the next random numbers of its seed. The info of that step then has
-    `terminal_observation`, `TimeLimit.truncated`, `is_success` and the progress of the round.
+    The other keywords are those of `TamaireEnv`, except that only state vectors can be observed: float32 array
+    (count, numbers). A round that ends starts again in the same step, with the next random numbers of its seed. The info
+    of that step then has `terminal_observation`, `TimeLimit.truncated`, the info of `TamaireEnv`, and `episode`: the sum
+    of rewards `r` and the number of steps `l`. `seed(s)` and `reset()` start the rounds of the seeds s, s + 1, …
     """
 
-    def __init__(self, level: str = "classic", count: int = 16, *, threads: int = 2, **settings: Any) -> None:
+    def __init__(self, level: str = "classic", count: int = 16, *, threads: int = 1, **settings: Any) -> None:
         self.render_mode = None
-        self.rounds = Rounds(level, count, threads=threads, **settings)
+        self.rounds = Rounds(str(level), count, threads=threads, **settings)
         self._length = np.zeros(count, np.int64)
         self._return = np.zeros(count)
         super().__init__(count, state_space(self.rounds), action_space(self.rounds))
 
     def reset(self) -> np.ndarray:
-        seeds = [None if seed is None else int(seed) for seed in self._seeds]
+        seeds = [mixed(seed) for seed in self._seeds]
         self._reset_seeds()
         self._length[:] = 0
         self._return[:] = 0.0
