@@ -99,7 +99,7 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=1_500_000, help="number of environment steps")
     parser.add_argument("--rounds", type=int, default=16, help="number of rounds that are played at once")
     parser.add_argument("--threads", type=int, default=2, help="number of threads that step the rounds")
-    parser.add_argument("--max-pieces", type=int, default=60, help="number of pieces beyond which a round is lost")
+    parser.add_argument("--max-pieces", type=int, default=40, help="number of pieces beyond which a round is lost")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=None, help="path of the policy, default LEVEL-REWARD.npz")
     options = parser.parse_args()

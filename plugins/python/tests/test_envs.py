@@ -143,7 +143,7 @@ def test_reward_is_the_documented_formula(reward):
         def potential(numbers):
             filled = min(numbers["within"] / 0.6, 1.0) - numbers["mean_distance"]
             torn = 1.0 - numbers["kept"]
-            shaved = min(torn / 0.15, 1.0) - 2.0 * max(torn - 0.15, 0.0)
+            shaved = min(torn / 0.07, 1.0) - 2.0 * max(torn - 0.07, 0.0)
             return filled + (shaved if reward == "shave" else 0.0)
 
         expected = potential(now) - potential(before)

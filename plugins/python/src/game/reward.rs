@@ -2,9 +2,9 @@
 
 use tamaire_play::{AnyRound, Progress, Route};
 
-/// Share of the mass up to which torn-off mass is rewarded on the way to a shaved win. The opening of the level
-/// `classic` has 0.85 of the width of the body.
-const SHAVED: f32 = 0.15;
+/// Share of the mass up to which torn-off mass is rewarded on the way to a shaved win: about what a disc loses if both
+/// sides are cut to the opening of the level `classic`, which has 0.85 of its width.
+const SHAVED: f32 = 0.07;
 /// Cost of tearing the whole mass off: in [`Reward::Squeeze`], and beyond [`SHAVED`] in [`Reward::Shave`].
 const TEARING: f32 = 2.0;
 

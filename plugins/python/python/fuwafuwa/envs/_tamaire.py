@@ -78,7 +78,7 @@ class TamaireEnv(gymnasium.Env):
     - "sparse": 1 for the win
     - "shaped": 5 for the win, plus the change of P
     - "squeeze": 5 for a win by squeezing, plus the change of P, minus 2 × the share of mass torn off in this step
-    - "shave": 5 for a win by shaving, plus the change of P + min(t / 0.15, 1) - 2 max(t - 0.15, 0), where t = 1 - kept is
+    - "shave": 5 for a win by shaving, plus the change of P + min(t / 0.07, 1) - 2 max(t - 0.07, 0), where t = 1 - kept is
       the share of mass torn off
 
     `info` is a dict with `within`, `inside`, `kept`, `pieces`, `held` [s], `seconds` on the clock, `ticks`, `is_success`
