@@ -80,7 +80,7 @@ class Curve(BaseCallback):
 
 
 def policy_of(model: PPO, normalizer: VecNormalize, about: dict) -> Policy:
-    """Return the mean action of a trained model as layers of numbers."""
+    """Return a trained model as layers of numbers."""
     net = model.policy
     modules = [module for module in net.mlp_extractor.policy_net if isinstance(module, torch.nn.Linear)]
     layers = [
@@ -89,7 +89,8 @@ def policy_of(model: PPO, normalizer: VecNormalize, about: dict) -> Policy:
     ]
     mean, variance = normalizer.obs_rms.mean, normalizer.obs_rms.var
     scale = 1.0 / np.sqrt(variance + normalizer.epsilon)
-    return Policy(layers, mean.astype(np.float32), scale.astype(np.float32), about)
+    std = net.log_std.exp().detach().numpy().astype(np.float32)
+    return Policy(layers, mean.astype(np.float32), scale.astype(np.float32), about, std)
 
 
 def main() -> None:

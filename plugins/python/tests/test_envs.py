@@ -447,7 +447,8 @@ def test_policy_computes_what_a_network_computes(tmp_path):
     rng = np.random.default_rng(1)
     layers = [(rng.normal(size=(3, 5)), rng.normal(size=3)), (rng.normal(size=(2, 3)), rng.normal(size=2))]
     layers = [(weight.astype(np.float32), bias.astype(np.float32)) for weight, bias in layers]
-    policy = envs.Policy(layers, np.ones(5, np.float32), np.full(5, 0.5, np.float32), {"level": "none"})
+    std = np.array([0.0, 0.1], np.float32)
+    policy = envs.Policy(layers, np.ones(5, np.float32), np.full(5, 0.5, np.float32), {"level": "none"}, std)
     policy.save(tmp_path / "policy.npz")
     again = envs.Policy.load(tmp_path / "policy.npz")
     assert again.about == {"level": "none"}
@@ -455,6 +456,11 @@ def test_policy_computes_what_a_network_computes(tmp_path):
     hidden = [np.tanh(sum(w * (s - 1) * 0.5 for w, s in zip(row, state)) + b) for row, b in zip(*layers[0])]
     output = [sum(w * h for w, h in zip(row, hidden)) + b for row, b in zip(*layers[1])]
     np.testing.assert_allclose(again(state), np.clip(output, -1, 1), rtol=1e-5)
+    random = np.random.default_rng(2)
+    states = np.tile(state * 0.01, (4000, 1))
+    noise = again(states, random) - again(states)
+    assert np.abs(again(states)).max() < 0.6, "the limits of actions must not cut the noise off"
+    np.testing.assert_allclose(noise.std(axis=0), std, rtol=0.1)
 
 
 @pytest.mark.skipif("not __import__('importlib').util.find_spec('pygame')", reason="pygame is not installed")
