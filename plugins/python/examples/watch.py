@@ -17,7 +17,7 @@ import fuwafuwa as fw
 from fuwafuwa import envs
 
 #: Width of the picture of a round [pixels].
-WIDTH = 400
+WIDTH = 300
 
 
 def played(name: str, options: argparse.Namespace) -> list[np.ndarray]:

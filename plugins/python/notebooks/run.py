@@ -71,7 +71,11 @@ def check(path: Path) -> Any:
 
 
 def write(path: Path) -> None:
-    """Run a notebook and store its outputs, and the picture for the documentation as docs/python/NAME.png."""
+    """Run a notebook and store its outputs, and its pictures for the documentation.
+
+    The picture of a cell with the tag "picture" becomes docs/python/NAME.png with the name of the notebook. The tag
+    "picture:OTHER" chooses another name.
+    """
     import nbformat
 
     notebook = execute(path)
@@ -80,11 +84,13 @@ def write(path: Path) -> None:
         "language_info": {"name": "python"},
     }
     for cell in notebook.cells:
-        is_picture = "picture" in cell.metadata.get("tags", [])
-        cell.metadata = {"tags": ["picture"]} if is_picture else {}
-        for part in cell.get("outputs", []) if is_picture else []:
+        tags = [tag for tag in cell.metadata.get("tags", []) if tag.split(":")[0] == "picture"]
+        cell.metadata = {"tags": tags} if tags else {}
+        for tag in tags:
+            name = tag.partition(":")[2] or path.stem
+            (part,) = (part for part in cell.outputs if "image/png" in part.get("data", {}))
             PICTURES.mkdir(exist_ok=True)
-            (PICTURES / f"{path.stem}.png").write_bytes(base64.b64decode(part.data["image/png"]))
+            (PICTURES / f"{name}.png").write_bytes(base64.b64decode(part.data["image/png"]))
     text = nbformat.writes(notebook)
     size = len(text.encode())
     if size > LARGEST:

@@ -1,6 +1,7 @@
 //! The game for learning programs: many rounds of a level, stepped on several threads.
 
 mod episode;
+pub mod network;
 mod observation;
 mod reward;
 

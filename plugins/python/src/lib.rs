@@ -67,6 +67,10 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     // `setattr` keeps private names out of `__all__`.
     module.setattr("_gif", wrap_pyfunction!(picture::gif, module)?)?;
     module.setattr("_Rounds", module.py().get_type::<game::Rounds>())?;
+    module.setattr(
+        "_network",
+        wrap_pyfunction!(game::network::network, module)?,
+    )?;
     module.setattr("_level_names", wrap_pyfunction!(game::level_names, module)?)?;
     module.setattr(
         "_verify_replay",

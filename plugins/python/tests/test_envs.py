@@ -421,7 +421,7 @@ def test_two_hands_pass_the_check_of_pettingzoo():
 
 @pytest.mark.parametrize("name", ["classic-squeeze", "classic-shave"])
 def test_trained_player_wins_by_its_route_on_seeds_of_its_own(name, tmp_path):
-    player, size = envs.trained_policy(name), 20
+    player, size = envs.trained_policy(name), 40
     route = name.removeprefix("classic-")
     env = envs.TamaireVectorEnv("classic", size, threads=2)
     # Training began with the seeds 1 to 16.
@@ -436,8 +436,8 @@ def test_trained_player_wins_by_its_route_on_seeds_of_its_own(name, tmp_path):
         waits &= ~(terminated | truncated)
         if not waits.any():
             break
-    # Rounding of the network differs between computers; 0.9 or more was measured on 1,000 seeds.
-    assert sum(found is not None for found in routes) >= 0.75 * size
+    # 95 % or more of 200 rounds were won, and at least 88 % by the player's route: see docs/python.md.
+    assert sum(found is not None for found in routes) >= 0.9 * size
     assert routes.count(route) >= 0.75 * size
     if routes[0] is not None:
         assert envs.verify_replay(tmp_path / "won.toml")["route"] == routes[0]
@@ -456,10 +456,10 @@ def test_policy_computes_what_a_network_computes(tmp_path):
     hidden = [np.tanh(sum(w * (s - 1) * 0.5 for w, s in zip(row, state)) + b) for row, b in zip(*layers[0])]
     output = [sum(w * h for w, h in zip(row, hidden)) + b for row, b in zip(*layers[1])]
     np.testing.assert_allclose(again(state), np.clip(output, -1, 1), rtol=1e-5)
-    random = np.random.default_rng(2)
-    states = np.tile(state * 0.01, (4000, 1))
-    noise = again(states, random) - again(states)
-    assert np.abs(again(states)).max() < 0.6, "the limits of actions must not cut the noise off"
+    # A tenth of the output layer keeps the actions far from their limits, which would cut the noise off.
+    layers[-1] = (0.1 * layers[-1][0], 0.1 * layers[-1][1])
+    noisy = envs.Policy(layers, policy.mean, policy.scale, std=std)
+    noise = noisy(np.tile(state, (4000, 1)), np.random.default_rng(2)) - noisy(state)
     np.testing.assert_allclose(noise.std(axis=0), std, rtol=0.1)
 
 

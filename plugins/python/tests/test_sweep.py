@@ -297,6 +297,9 @@ def test_cluster_that_loses_a_node_gives_the_whole_table(serial, calls):
         if "SECOND_NODE" in os.environ:
             (folder / f"{os.getpid()}").touch()
             time.sleep(1000)
+        # The first node is busy until then, so that the second one gets a row, however late it starts.
+        while not list(folder.iterdir()):
+            time.sleep(0.01)
         return impact(world, speed)
 
     removed = []

@@ -2780,6 +2780,11 @@ class _Rounds:
     def __copy__(self, /) -> _Rounds: ...
     def __deepcopy__(self, _memo: Any, /) -> _Rounds: ...
 
+def _network(inputs: _F32, layers: Sequence[tuple[_F32, _F32]]) -> _F32:
+    """Returns the outputs (rows, outputs) of a network for inputs (rows, inputs). All layers except the last one end in tanh.
+
+    numpy would add products in an order that depends on the processor.
+    """
 def _level_names() -> list[str]:
     """Returns the names of the built-in levels with a basket."""
 def _verify_replay(replay: _File) -> dict[str, Any] | None:

@@ -8,6 +8,8 @@ from typing import IO, Any
 
 import numpy as np
 
+from .._core import _network
+
 #: Limit of normalized observations, the `clip_obs` of training.
 _CLIP = 10.0
 
@@ -38,14 +40,12 @@ class Policy:
     def __call__(self, observation: np.ndarray, random: np.random.Generator | None = None) -> np.ndarray:
         """Return the actions for one observation (numbers,) or several (count, numbers).
 
-        Without `random` they are the most probable ones. With it they have noise, as in training, which frees a body that
+        Without `random` they are the most probable ones, with the same bits on every computer. With it they have noise, as in training, which frees a body that
         is stuck.
         """
-        values: np.ndarray = np.clip((observation - self.mean) * self.scale, -_CLIP, _CLIP)
-        for weight, bias in self.layers[:-1]:
-            values = np.tanh(values @ weight.T + bias)
-        weight, bias = self.layers[-1]
-        values = values @ weight.T + bias
+        inputs = np.clip((observation - self.mean) * self.scale, -_CLIP, _CLIP).astype(np.float32)
+        rows = _network(np.atleast_2d(inputs), self.layers)
+        values = rows.reshape(*inputs.shape[:-1], -1)
         if random is not None:
             values = values + self.std * random.standard_normal(values.shape)
         actions: np.ndarray = np.clip(values, -1.0, 1.0).astype(np.float32)
