@@ -45,7 +45,7 @@ class Policy:
         """
         inputs = np.clip((observation - self.mean) * self.scale, -_CLIP, _CLIP).astype(np.float32)
         rows = _network(np.atleast_2d(inputs), self.layers)
-        values = rows.reshape(*inputs.shape[:-1], -1)
+        values: np.ndarray = rows.reshape(*inputs.shape[:-1], -1)
         if random is not None:
             values = values + self.std * random.standard_normal(values.shape)
         actions: np.ndarray = np.clip(values, -1.0, 1.0).astype(np.float32)
