@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 
 _COLOURS = ("material", "strain", "damage", "piece")
+#: Labels of the colours that have a scale.
+_SCALES = {"strain": "strain", "damage": "damage; nodes split at 1"}
 #: Corners of a face or block, in the order around it.
 _ROUND = [0, 1, 3, 2]
 _OBSTACLE = "#8d8d8d"
@@ -35,14 +37,28 @@ def plot(
             "World.png() and World.save_png() need nothing"
         ) from error
     is_flat = len(world.gravity) == 2
-    if ax is None:
+    is_own = ax is None
+    if is_own:
         projection = None if is_flat else "3d"
         _, ax = plt.subplots(subplot_kw={"projection": projection})
     elif not is_flat and not hasattr(ax, "set_zlim"):
         raise Error('ax must be axes with projection="3d" for a World3, given 2D axes')
+    low = 0.0 if vmin is None else vmin
+    high = _highest(world, color) if vmax is None else vmax
     draw = _plane if is_flat else _space
-    draw(world, ax, color, plt.get_cmap(cmap), vmin, vmax)
+    draw(world, ax, color, plt.get_cmap(cmap), low, high)
+    if is_own and color in _SCALES:
+        scale = plt.cm.ScalarMappable(plt.Normalize(low, high), cmap)
+        ax.figure.colorbar(scale, ax=ax, label=_SCALES[color], shrink=0.7)
     return ax
+
+
+def _highest(world: Any, color: str) -> float:
+    """Return the value at the upper end of the scale: 1 for damage, otherwise the largest value of all bodies."""
+    if color == "strain":
+        highest = (float(world[handle].strain.max(initial=0.0)) for handle in world.soft_bodies)
+        return max(highest, default=0.0) or 1e-6
+    return 1.0
 
 
 def _values(body: Any, color: str) -> np.ndarray:
@@ -58,17 +74,12 @@ def _values(body: Any, color: str) -> np.ndarray:
     return body.element_materials.astype(np.float32)
 
 
-def _face_colours(
-    body: Any, owners: np.ndarray, color: str, cmap: Any, vmin: float | None, vmax: float | None
-) -> np.ndarray:
+def _face_colours(body: Any, owners: np.ndarray, color: str, cmap: Any, low: float, high: float) -> np.ndarray:
     values = _values(body, color)[owners]
     if color in ("material", "piece"):
         import matplotlib.pyplot as plt
 
         return plt.get_cmap("tab10")(values.astype(int) % 10)
-    low = 0.0 if vmin is None else vmin
-    usual = 1.0 if color == "damage" else max(float(values.max(initial=0.0)), 1e-6)
-    high = usual if vmax is None else vmax
     return cmap(np.clip((values - low) / max(high - low, 1e-12), 0.0, 1.0))
 
 
@@ -76,7 +87,7 @@ def _rigid_colour(body: Any) -> str:
     return _HAND if body.motion["type"] in ("coupled", "kinematic") else _OBSTACLE
 
 
-def _plane(world: Any, ax: Any, color: str, cmap: Any, vmin: float | None, vmax: float | None) -> None:
+def _plane(world: Any, ax: Any, color: str, cmap: Any, vmin: float, vmax: float) -> None:
     from matplotlib.collections import LineCollection, PolyCollection
 
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
@@ -161,7 +172,7 @@ def _below_plane(parameters: dict[str, Any], low: np.ndarray, high: np.ndarray) 
     return np.array(inside)
 
 
-def _space(world: Any, ax: Any, color: str, cmap: Any, vmin: float | None, vmax: float | None) -> None:
+def _space(world: Any, ax: Any, color: str, cmap: Any, vmin: float, vmax: float) -> None:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
     # Axes of matplotlib have z upwards, those of the engine have y.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -78,6 +79,10 @@ class TwoHandsEnv(ParallelEnv):  # type: ignore[misc]
     def replay(self) -> str:
         """Return the round up to now as the text of a replay file of the game."""
         return self.env.replay()
+
+    def save_replay(self, path: str | PathLike[str]) -> None:
+        """Write the round up to now as a replay file of the game."""
+        self.env.save_replay(path)
 
     def close(self) -> None:
         """Close the window."""
