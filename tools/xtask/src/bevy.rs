@@ -1,7 +1,7 @@
 //! Tasks of the Bevy plugin, `plugins/bevy_fuwafuwa`: a separate workspace with its own target folder.
 
 use crate::packages::{IfMissing, Purpose, provide};
-use crate::shell::{Failure, cargo, execute, root, target};
+use crate::shell::{Failure, cargo_in, execute, root, target};
 use std::fs;
 use std::process::Command;
 
@@ -85,14 +85,7 @@ fn pictures(if_missing: IfMissing) -> Result<(), Failure> {
 
 /// Returns a cargo command for the workspace of the plugin.
 fn in_workspace(words: &str) -> Command {
-    let mut words = words.split(' ');
-    let mut command = cargo();
-    command
-        .args(words.next())
-        .args(["--manifest-path", MANIFEST])
-        .args(words);
-    command.env("CARGO_TARGET_DIR", folder());
-    command
+    cargo_in(MANIFEST, &folder(), words)
 }
 
 fn folder() -> std::path::PathBuf {

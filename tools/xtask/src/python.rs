@@ -3,7 +3,7 @@
 use crate::cross::{WINDOWS, Wanted};
 use crate::folders;
 use crate::packages::{IfMissing, Purpose, provide};
-use crate::shell::{Failure, cargo, execute, execute_in, file_error, output_of, root, target};
+use crate::shell::{Failure, cargo_in, execute, execute_in, file_error, output_of, root, target};
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -204,14 +204,7 @@ fn wheel_in(folder: &Path, most_bytes: u64) -> Result<PathBuf, Failure> {
 
 /// Returns a cargo command for the workspace of the package.
 fn in_workspace(words: &str) -> Command {
-    let mut words = words.split(' ');
-    let mut command = cargo();
-    command
-        .args(words.next())
-        .args(["--manifest-path", MANIFEST])
-        .args(words);
-    command.env("CARGO_TARGET_DIR", target_folder());
-    command
+    cargo_in(MANIFEST, &target_folder(), words)
 }
 
 fn target_folder() -> PathBuf {

@@ -40,6 +40,18 @@ pub fn cargo() -> Command {
     Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
+/// Returns a cargo command for another workspace, which has its own target folder.
+pub fn cargo_in(manifest: &str, target_folder: &Path, words: &str) -> Command {
+    let mut words = words.split(' ');
+    let mut command = cargo();
+    command
+        .args(words.next())
+        .args(["--manifest-path", manifest])
+        .args(words);
+    command.env("CARGO_TARGET_DIR", target_folder);
+    command
+}
+
 /// Prints the command, and runs it at the root of the workspace. `hint` is the advice that is printed if it
 /// fails.
 pub fn execute(command: &mut Command, hint: &str) -> Result<(), Failure> {
