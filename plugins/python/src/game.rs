@@ -5,7 +5,7 @@ pub mod network;
 mod observation;
 mod reward;
 
-use crate::convert::{Any, name_of, named};
+use crate::convert::{Any, name_of, named, rows};
 use crate::error::{OrInvalid, file_error, invalid, invalid_parameter};
 use crate::file::File;
 use crate::picture::{Paint, rgb};
@@ -13,7 +13,7 @@ use episode::{Episode, Settings, Step};
 use fuwafuwa::DimVector;
 use fuwafuwa_painter::{PaintError, Pixmap};
 use fuwafuwa_scenes::disk::reader_in;
-use numpy::ndarray::{Array2, ArrayView2};
+use numpy::ndarray::ArrayView2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -21,7 +21,8 @@ use reward::REWARDS;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::thread;
-use tamaire_play::level::{MAX_KEPT_BYTES, built_in};
+use tamaire_play::level::built_in;
+use tamaire_play::replay::MAX_BYTES;
 use tamaire_play::{AnyRound, Level, PLAYERS, Playback, Replay, Round, Route};
 
 /// Names of the routes of a win.
@@ -143,14 +144,10 @@ impl Rounds {
     fn observed<'py>(
         &self,
         py: Python<'py>,
-        rows: impl IntoIterator<Item = Vec<f32>>,
+        observations: impl IntoIterator<Item = Vec<f32>>,
     ) -> Bound<'py, PyArray2<f32>> {
-        let shape = (self.episodes.len(), self.settings.observation_names().len());
-        let values = rows.into_iter().flatten().collect();
-        let array = Array2::from_shape_vec(shape, values);
-        array
-            .expect("each observation has a number for each name")
-            .into_pyarray(py)
+        let values: Vec<f32> = observations.into_iter().flatten().collect();
+        rows(py, values.len() / self.episodes.len(), values)
     }
 
     /// Checks that a list has a value for each round.
@@ -253,23 +250,15 @@ impl Rounds {
         seeds: Vec<Option<u64>>,
         chosen: Vec<bool>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let count = self.episodes.len();
-        for (field, found) in [("seeds", seeds.len()), ("chosen", chosen.len())] {
-            if found != count {
-                return Err(invalid_parameter(
-                    field,
-                    format!("{count} values"),
-                    found.to_string(),
-                ));
-            }
-        }
-        let rows = self.for_each(py, |index, episode| {
+        self.check_count("seeds", seeds.len())?;
+        self.check_count("chosen", chosen.len())?;
+        let observations = self.for_each(py, |index, episode| {
             if chosen[index] {
                 episode.reset(seeds[index]);
             }
             episode.observe()
         });
-        Ok(self.observed(py, rows))
+        Ok(self.observed(py, observations))
     }
 
     /// Steps all rounds: actions (count, hands * d) from -1 to 1. Rounds for which `restart` is true start again
@@ -298,11 +287,17 @@ impl Rounds {
             };
             (step, episode.observe())
         });
-        let (steps, rows): (Vec<Step>, Vec<_>) = results.into_iter().unzip();
+        let (steps, observations): (Vec<Step>, Vec<_>) = results.into_iter().unzip();
         let rewards = PyArray1::from_iter(py, steps.iter().map(|step| step.reward));
         let flags = |is_set: fn(&Step) -> bool| PyArray1::from_iter(py, steps.iter().map(is_set));
         let [terminated, truncated] = [flags(|step| step.terminated), flags(|step| step.truncated)];
-        (self.observed(py, rows), rewards, terminated, truncated).into_pyobject(py)
+        (
+            self.observed(py, observations),
+            rewards,
+            terminated,
+            truncated,
+        )
+            .into_pyobject(py)
     }
 
     /// Returns the observations (count, numbers).
@@ -404,10 +399,7 @@ pub fn verify_replay<'py>(
     py: Python<'py>,
     replay: &Any<'py>,
 ) -> PyResult<Option<Bound<'py, PyDict>>> {
-    let file = File::read(
-        replay,
-        MAX_KEPT_BYTES.max(tamaire_play::replay::MAX_BYTES as u64),
-    )?;
+    let file = File::read(replay, MAX_BYTES as u64)?;
     let named =
         |error: tamaire_play::ReplayError| crate::error::invalid(format!("{}: {error}", file.name));
     let replay = Replay::of_bytes(&file.bytes).map_err(named)?;

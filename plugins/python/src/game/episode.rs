@@ -37,6 +37,16 @@ pub struct Settings {
     pub random_start: bool,
 }
 
+/// Evaluates an expression for the round of either dimension.
+macro_rules! both {
+    ($any:expr, $one:ident => $act:expr) => {
+        match $any {
+            AnyRound::Plane($one) => $act,
+            AnyRound::Space($one) => $act,
+        }
+    };
+}
+
 impl Settings {
     /// Returns the number of dimensions.
     pub fn dim(&self) -> usize {
@@ -46,6 +56,12 @@ impl Settings {
     /// Returns the number of numbers in an action.
     pub fn action_size(&self) -> usize {
         self.players * self.dim()
+    }
+
+    /// Returns the state of a round that rewards depend on.
+    fn standing_of(&self, round: &AnyRound) -> Standing {
+        let distance = both!(round, round => mean_distance(round));
+        self.reward.standing(round, distance)
     }
 
     /// Returns the names of the numbers of an observation.
@@ -72,17 +88,6 @@ pub struct Episode {
     random: fastrand::Rng,
     steps: u32,
     standing: Standing,
-    has_begun: bool,
-}
-
-/// Evaluates an expression for the round of either dimension.
-macro_rules! both {
-    ($any:expr, $one:ident => $act:expr) => {
-        match $any {
-            AnyRound::Plane($one) => $act,
-            AnyRound::Space($one) => $act,
-        }
-    };
 }
 
 impl Episode {
@@ -91,12 +96,11 @@ impl Episode {
         let round = AnyRound::new(settings.level.clone());
         let random = fastrand::Rng::with_seed(0);
         Self {
+            standing: settings.standing_of(&round),
             settings,
             round,
             random,
             steps: 0,
-            standing: Standing::default(),
-            has_begun: false,
         }
     }
 
@@ -109,9 +113,9 @@ impl Episode {
         }
     }
 
-    /// Returns whether a round was started.
+    /// Returns whether a round was started, which plays the ticks of its opening.
     pub fn has_begun(&self) -> bool {
-        self.has_begun
+        self.round.ticks() > 0
     }
 
     /// Returns the round.
@@ -126,34 +130,23 @@ impl Episode {
         }
         self.round = AnyRound::new(self.settings.level.clone());
         self.steps = 0;
-        self.has_begun = true;
         self.open();
-        self.standing = self.standing_now();
+        self.standing = self.settings.standing_of(&self.round);
     }
 
     /// Lets the hands join, and moves them to random places on free ways. The recording holds these ticks too, so the
     /// replay of the episode is a round of the unchanged level.
     fn open(&mut self) {
         let players = self.settings.players;
-        let starts: Vec<Vec3> = (0..players)
-            .map(|player| self.round.start(player))
-            .collect();
-        let towards = |places: &[Vec3]| {
-            let places = places.iter().enumerate();
-            places.fold(InputFrame::default(), |frame, (player, place)| {
-                frame.with(player, *place)
-            })
-        };
+        let starts = (0..players).map(|player| self.round.start(player));
         // A tick lets the second player in.
-        self.round.step(towards(&starts));
+        let frame = frame_towards(starts);
+        self.round.step(frame);
         if !self.settings.random_start {
             return;
         }
         let random = &mut self.random;
-        let places: Vec<Vec3> = match &self.round {
-            AnyRound::Plane(round) => free_places(round, random, players),
-            AnyRound::Space(round) => free_places(round, random, players),
-        };
+        let places = both!(&self.round, round => free_places(round, random, players));
         for _ in 0..OPENING_TICKS {
             let hands = self.round.hands();
             let is_there = |(hand, place): (&tamaire_play::round::Hand, &Vec3)| {
@@ -167,8 +160,7 @@ impl Episode {
                 let most = OPENING_SPEED * DEFAULT_TICK;
                 hand.target + way * (most / way.length().max(1e-6)).min(1.0)
             });
-            let next: Vec<Vec3> = next.collect();
-            self.round.step(towards(&next));
+            self.round.step(frame_towards(next));
         }
     }
 
@@ -185,20 +177,17 @@ impl Episode {
             if self.round.progress().outcome.is_some() {
                 break;
             }
-            let targets: Vec<Vec3> = both!(&self.round, round => {
-                round.hands().map(|hand| hand.target_position().to_vec3()).collect()
+            let frame = both!(&self.round, round => {
+                let hands = round.hands().zip(velocities);
+                frame_towards(hands.map(|(hand, velocity)| {
+                    hand.target_position().to_vec3() + velocity * DEFAULT_TICK
+                }))
             });
-            let frame = targets.iter().zip(velocities).enumerate().fold(
-                InputFrame::default(),
-                |frame, (player, (target, velocity))| {
-                    frame.with(player, *target + velocity * DEFAULT_TICK)
-                },
-            );
             self.round.step(frame);
         }
         self.steps += 1;
         let before = self.standing;
-        self.standing = self.standing_now();
+        self.standing = self.settings.standing_of(&self.round);
         let progress = self.round.progress();
         let settings = &self.settings;
         let is_lost = settings.max_pieces > 0 && progress.pieces > settings.max_pieces;
@@ -217,13 +206,17 @@ impl Episode {
             most => 1.0 - (self.steps as f32 / most as f32).min(1.0),
         };
         let players = self.settings.players;
-        both!(&self.round, round => observe(round, players, time_left))
+        let distance = self.standing.distance;
+        both!(&self.round, round => observe(round, players, distance, time_left))
     }
+}
 
-    fn standing_now(&self) -> Standing {
-        let distance = both!(&self.round, round => mean_distance(round));
-        self.settings.reward.standing(&self.round, distance)
-    }
+/// Returns a frame with a target for each hand [m].
+fn frame_towards(targets: impl Iterator<Item = Vec3>) -> InputFrame {
+    let targets = targets.enumerate();
+    targets.fold(InputFrame::default(), |frame, (player, target)| {
+        frame.with(player, target)
+    })
 }
 
 /// Returns a random place for each hand [m] to which a straight way leads that is free of obstacles, bodies and the

@@ -39,8 +39,14 @@ pub fn names(dim: usize, players: usize) -> Vec<String> {
     names
 }
 
-/// Returns the observation of a round. `time_left` is the share of the time that is left, 0 to 1.
-pub fn observe<D: Dim>(round: &Round<D>, players: usize, time_left: f32) -> Vec<f32> {
+/// Returns the observation of a round. `distance` is the mean distance of its mass from the basket [m], and `time_left`
+/// the share of the time that is left, 0 to 1.
+pub fn observe<D: Dim>(
+    round: &Round<D>,
+    players: usize,
+    distance: f32,
+    time_left: f32,
+) -> Vec<f32> {
     let mut numbers = Vec::with_capacity(128);
     let vector = |numbers: &mut Vec<f32>, vector: Vec3| {
         numbers.extend_from_slice(&vector.to_array()[..D::N]);
@@ -67,7 +73,7 @@ pub fn observe<D: Dim>(round: &Round<D>, players: usize, time_left: f32) -> Vec<
         progress.kept,
         round.share_held(),
         progress.pieces as f32,
-        mean_distance(round),
+        distance,
         time_left,
     ]);
     let views = round.counted_bodies().flat_map(|body| body.piece_views());

@@ -34,8 +34,10 @@ pub enum Reward {
 }
 
 /// State of a round that rewards depend on.
-#[derive(Copy, Clone, Debug, Default)]
+#[derive(Copy, Clone, Debug)]
 pub struct Standing {
+    /// Mean distance of the mass from the basket [m].
+    pub distance: f32,
     potential: f32,
     kept: f32,
 }
@@ -53,6 +55,7 @@ impl Reward {
             _ => 0.0,
         };
         Standing {
+            distance,
             potential: filled - distance + shaved,
             kept: progress.kept,
         }
